@@ -1,0 +1,1 @@
+//! Jobs, cells, planning and simulation around the motion core.

@@ -1,0 +1,2 @@
+//! The program `seamline`.
+fn main() {}

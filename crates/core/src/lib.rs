@@ -1,0 +1,26 @@
+//! Seamline's motion core: everything that runs in a robot's control cycle, and all the mathematics behind it.
+//!
+//! # Map
+//! | module | holds |
+//! |---|---|
+//! | [`math`] | elementary functions with or without std |
+//! | [`geometry`] | poses, Euler angles, poses with their derivatives along a path |
+//! | [`path`] | lines and arcs with orientation, as functions of the path coordinate |
+//!
+//! # Units and frames
+//! SI throughout: metre, radian, second. A pose is named by its two frames, and neighbouring frames cancel:
+//! `base_from_tcp = base_from_flange * flange_from_tcp`.
+//!
+//! # What is not here
+//! No heap, no clock, no file, no thread, no log, no string formatting, no `unsafe`: time is an argument, and
+//! every call has a bounded cost.
+#![no_std]
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+#[cfg(any(feature = "std", test))]
+extern crate std;
+
+pub mod geometry;
+pub mod math;
+pub mod path;

@@ -1,0 +1,3 @@
+//! Elementary functions and small numeric tools.
+
+pub mod float;

@@ -1,0 +1,107 @@
+//! Paths of the tool centre point in space: position and orientation as functions of one path coordinate.
+//!
+//! The coordinate s runs from 0 to [`Path::length`]: arc length in metres, or, for a path that turns on the spot, the
+//! angle in radians. Line and arc have constant curvature, and the orientation follows the geodesic at constant rate
+//! in s, so that all derivatives are exact and cheap.
+
+mod curve;
+mod orientation;
+
+pub use curve::{Arc, ArcError, Curve};
+pub use orientation::Geodesic;
+
+use crate::geometry::{Pose, PoseJet};
+
+/// Positions closer than this are one point: 1 nm.
+pub const SAME_POSITION: f64 = 1e-9;
+/// Orientations closer than this are one: 1 nrad.
+pub const SAME_ORIENTATION: f64 = 1e-9;
+
+/// What a path's coordinate counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Measure {
+    /// Arc length of the tool centre point, in metres.
+    Length,
+    /// Angle of a turn on the spot, in radians.
+    Angle,
+}
+
+/// A segment of a tool path: where, and how turned, at each value of the path coordinate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Path {
+    curve: Curve,
+    orientation: Geodesic,
+    length: f64,
+    measure: Measure,
+}
+
+impl Path {
+    /// A straight line from one pose to another, or a turn on the spot where the positions agree.
+    #[must_use]
+    pub fn line(start: &Pose, end: &Pose) -> Self {
+        let curve = Curve::line(start.translation.vector, end.translation.vector);
+        Self::new(curve, Geodesic::new(start.rotation, end.rotation))
+    }
+
+    /// A circular arc from `start` through `via` to `end`. The orientation goes from start to via and on to end only
+    /// as far as start and end say: it follows the geodesic between these two.
+    ///
+    /// # Errors
+    /// [`ArcError`] where the three positions do not determine a circle.
+    pub fn arc(start: &Pose, via: &Pose, end: &Pose) -> Result<Self, ArcError> {
+        let arc = Arc::through(start.translation.vector, via.translation.vector, end.translation.vector)?;
+        Ok(Self::new(Curve::Arc(arc), Geodesic::new(start.rotation, end.rotation)))
+    }
+
+    fn new(curve: Curve, orientation: Geodesic) -> Self {
+        let (length, measure) = if curve.length() > SAME_POSITION {
+            (curve.length(), Measure::Length)
+        } else {
+            (orientation.angle(), Measure::Angle)
+        };
+        Self { curve, orientation, length, measure }
+    }
+
+    /// Length of the path: metres or radians, as [`Path::measure`] says. Zero where nothing moves.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// What the path coordinate counts.
+    #[must_use]
+    pub fn measure(&self) -> Measure {
+        self.measure
+    }
+
+    /// The curve of the tool centre point.
+    #[must_use]
+    pub fn curve(&self) -> &Curve {
+        &self.curve
+    }
+
+    /// The orientation along the path.
+    #[must_use]
+    pub fn orientation(&self) -> &Geodesic {
+        &self.orientation
+    }
+
+    /// The pose at coordinate `s`, and its derivatives with respect to s.
+    #[must_use]
+    pub fn jet(&self, s: f64) -> PoseJet {
+        let (position, linear) = match self.measure {
+            Measure::Length => self.curve.jet(s),
+            Measure::Angle => self.curve.jet(0.0).at_rest(),
+        }
+        .into_parts();
+        let rate = if self.length > 0.0 { self.orientation.angle() / self.length } else { 0.0 };
+        let (rotation, angular) = self.orientation.at(rate * s, rate);
+        PoseJet { pose: Pose::from_parts(position.into(), rotation), linear, angular }
+    }
+
+    /// The pose at coordinate `s`.
+    #[must_use]
+    pub fn pose(&self, s: f64) -> Pose {
+        self.jet(s).pose
+    }
+}
