@@ -133,6 +133,13 @@ impl Arc {
         Ok(Self { centre: start + to_centre, radius, radial, tangent, angle })
     }
 
+    /// Arc length from the start to the point of the circle that lies in the direction of `point`, in [0, 2πr).
+    pub(super) fn coordinate(&self, point: Vector3) -> f64 {
+        let from_centre = point - self.centre;
+        let angle = atan2(from_centre.dot(&self.tangent), from_centre.dot(&self.radial));
+        self.radius * if angle < 0.0 { angle + core::f64::consts::TAU } else { angle }
+    }
+
     fn jet(&self, s: f64) -> PointJet {
         let (sin, cos) = sin_cos(s / self.radius);
         let outward = self.radial * cos + self.tangent * sin;

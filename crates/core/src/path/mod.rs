@@ -1,14 +1,15 @@
 //! Paths of the tool centre point in space: position and orientation as functions of one path coordinate.
 //!
 //! The coordinate s runs from 0 to [`Path::length`]: arc length in metres, or, for a path that turns on the spot, the
-//! angle in radians. Line and arc have constant curvature, and the orientation follows the geodesic at constant rate
-//! in s, so that all derivatives are exact and cheap.
+//! angle in radians. Position and orientation have closed-form derivatives in s, so that joint limits along the path can
+//! be asked exactly.
 
 mod curve;
 mod orientation;
+mod rotation_vector;
 
 pub use curve::{Arc, ArcError, Curve};
-pub use orientation::Geodesic;
+pub use orientation::{Geodesic, Orientation, Through};
 
 use crate::geometry::{Pose, PoseJet};
 
@@ -30,7 +31,7 @@ pub enum Measure {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Path {
     curve: Curve,
-    orientation: Geodesic,
+    orientation: Orientation,
     length: f64,
     measure: Measure,
 }
@@ -40,26 +41,26 @@ impl Path {
     #[must_use]
     pub fn line(start: &Pose, end: &Pose) -> Self {
         let curve = Curve::line(start.translation.vector, end.translation.vector);
-        Self::new(curve, Geodesic::new(start.rotation, end.rotation))
+        let turn = Geodesic::new(start.rotation, end.rotation);
+        let (length, measure) = if curve.length() > SAME_POSITION {
+            (curve.length(), Measure::Length)
+        } else {
+            (turn.angle(), Measure::Angle)
+        };
+        Self { curve, orientation: Orientation::Geodesic(turn), length, measure }
     }
 
-    /// A circular arc from `start` through `via` to `end`. The orientation goes from start to via and on to end only
-    /// as far as start and end say: it follows the geodesic between these two.
+    /// A circular arc from `start` through `via` to `end`, in position and orientation.
     ///
     /// # Errors
     /// [`ArcError`] where the three positions do not determine a circle.
     pub fn arc(start: &Pose, via: &Pose, end: &Pose) -> Result<Self, ArcError> {
         let arc = Arc::through(start.translation.vector, via.translation.vector, end.translation.vector)?;
-        Ok(Self::new(Curve::Arc(arc), Geodesic::new(start.rotation, end.rotation)))
-    }
-
-    fn new(curve: Curve, orientation: Geodesic) -> Self {
-        let (length, measure) = if curve.length() > SAME_POSITION {
-            (curve.length(), Measure::Length)
-        } else {
-            (orientation.angle(), Measure::Angle)
-        };
-        Self { curve, orientation, length, measure }
+        let length = arc.radius * arc.angle;
+        let via_at = arc.coordinate(via.translation.vector);
+        let turn = Through::new(start.rotation, via.rotation, end.rotation, via_at, length);
+        let orientation = Orientation::Through(turn);
+        Ok(Self { curve: Curve::Arc(arc), orientation, length, measure: Measure::Length })
     }
 
     /// Length of the path: metres or radians, as [`Path::measure`] says. Zero where nothing moves.
@@ -82,7 +83,7 @@ impl Path {
 
     /// The orientation along the path.
     #[must_use]
-    pub fn orientation(&self) -> &Geodesic {
+    pub fn orientation(&self) -> &Orientation {
         &self.orientation
     }
 
@@ -94,8 +95,7 @@ impl Path {
             Measure::Angle => self.curve.jet(0.0).at_rest(),
         }
         .into_parts();
-        let rate = if self.length > 0.0 { self.orientation.angle() / self.length } else { 0.0 };
-        let (rotation, angular) = self.orientation.at(rate * s, rate);
+        let (rotation, angular) = self.orientation.at(s, self.length);
         PoseJet { pose: Pose::from_parts(position.into(), rotation), linear, angular }
     }
 
@@ -105,3 +105,6 @@ impl Path {
         self.jet(s).pose
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,63 @@
-//! Orientation along a path: the shortest turn between two rotations, at constant rate.
+//! Orientation along a path: the shortest turn between two rotations, or a smooth turn through three.
 
+use super::rotation_vector::RotationVectorJet;
 use crate::geometry::{Rotation, Vector3};
+
+/// The orientation as function of the path coordinate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Orientation {
+    /// From start to end, the shortest way, at constant rate.
+    Geodesic(Geodesic),
+    /// Through an orientation on the way.
+    Through(Through),
+}
+
+impl Orientation {
+    /// The orientation at coordinate `s` of a path of `length`, and the angular velocity with its two derivatives.
+    pub(super) fn at(&self, s: f64, length: f64) -> (Rotation, [Vector3; 3]) {
+        match self {
+            Self::Geodesic(geodesic) => {
+                let rate = if length > 0.0 { geodesic.angle() / length } else { 0.0 };
+                geodesic.at(rate * s, rate)
+            }
+            Self::Through(through) => through.at(s),
+        }
+    }
+}
+
+/// A smooth turn through an orientation on the way: relative to it the rotation vector is the parabola through
+/// start, zero and end. Where the three lie evenly on one geodesic, it is that geodesic. It follows turns of more
+/// than half a revolution, which the geodesic from start to end would take the other way round.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Through {
+    via: Rotation,
+    via_at: f64,
+    /// Coefficients of (s − via_at) and its square, in the parent frame.
+    linear: Vector3,
+    quadratic: Vector3,
+}
+
+impl Through {
+    /// Turns from `start` at 0 through `via` at coordinate `via_at` to `end` at `length`.
+    pub(super) fn new(start: Rotation, via: Rotation, end: Rotation, via_at: f64, length: f64) -> Self {
+        let back = (start * via.inverse()).scaled_axis();
+        let ahead = (end * via.inverse()).scaled_axis();
+        let (before, after) = (via_at, length - via_at);
+        let quadratic = (back / before + ahead / after) / length;
+        Self { via, via_at, linear: ahead / after - quadratic * after, quadratic }
+    }
+
+    fn at(&self, s: f64) -> (Rotation, [Vector3; 3]) {
+        let x = s - self.via_at;
+        let jet = RotationVectorJet {
+            vector: (self.linear + self.quadratic * x) * x,
+            first: self.linear + self.quadratic * (2.0 * x),
+            second: self.quadratic * 2.0,
+        };
+        let (turn, angular) = jet.rotation();
+        (turn * self.via, angular)
+    }
+}
 
 /// The geodesic between two orientations: one axis, one angle in [0, π].
 #[derive(Debug, Clone, Copy, PartialEq)]
