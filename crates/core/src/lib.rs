@@ -3,8 +3,11 @@
 //! # Map
 //! | module | holds |
 //! |---|---|
+//! | [`control`] | the cycle: modes, blocks of motion, rate of programme time |
+//! | [`drive`] | what stands between the cycle and the motors |
 //! | [`math`] | elementary functions with or without std |
 //! | [`geometry`] | poses, Euler angles, poses with their derivatives along a path |
+//! | [`safety`] | the envelope every command must lie in, faults and stops |
 //! | [`path`] | lines and arcs with orientation, as functions of the path coordinate |
 //!
 //! # Units and frames
@@ -21,6 +24,9 @@
 #[cfg(any(feature = "std", test))]
 extern crate std;
 
+pub mod control;
+pub mod drive;
 pub mod geometry;
 pub mod math;
 pub mod path;
+pub mod safety;
