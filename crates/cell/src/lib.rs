@@ -1,1 +1,3 @@
 //! Jobs, cells, planning and simulation around the motion core.
+
+pub mod cell;
