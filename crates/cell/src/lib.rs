@@ -1,1 +1,13 @@
 //! Jobs, cells, planning and simulation around the motion core.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`cell`] | the cell file: robot, limits, tools, conditions, simulation |
+//! | [`job`] | INFORM job files: reader, checks, interpreter |
+//! | [`plan`] | from steps to blocks; the speed along a path that keeps every joint limit |
+//! | [`record`] | what a run leaves behind: recording, figures, data for plots |
+
+pub mod cell;
+pub mod job;
+pub mod plan;
+pub mod record;

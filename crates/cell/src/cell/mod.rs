@@ -1,0 +1,179 @@
+//! The cell: everything about a robot and its surroundings that a job leaves open, read from a TOML file.
+//!
+//! A file gives only what differs from the [default cell](DEFAULT_CELL_TOML): it is laid over it key by key, and
+//! arrays of tables (`[[tool]]`, `[[robot.joint]]` …) table by table, by their `number`. A file with another robot
+//! than the default's brings its own joints.
+//!
+//! Units stand in the keys (`velocity_deg_s`); the types here are SI. Every value is checked once, when the file
+//! is read: an unknown key, a wrong type, a value out of range or two that contradict each other is one
+//! [`CellError`] with file, line, column, key, what was found and what was expected.
+
+mod document;
+mod error;
+mod frames;
+mod job_rules;
+mod motion;
+mod nearest;
+mod robot;
+mod section;
+mod sensor;
+#[cfg(test)]
+mod tests;
+mod welding;
+
+use std::path::Path;
+
+pub use error::{CellError, Problem, Suggestion};
+pub use frames::{Tool, UserFrame};
+pub use job_rules::{Io, JobRules, ScriptedInput, SpeedUnit, UnmetWait, UnscriptedInput, WeldSpeedRule};
+pub use motion::{CartesianLimits, Cycle, DriveBackend, FlexibleMode, Safety};
+pub use robot::{
+    BuiltInRobot, DhConvention, DhRow, DhTable, JOINTS_MAX, Joint, JointKind, OpwParameters, Robot,
+    RobotModel, UrdfSource,
+};
+pub use sensor::{LaserErrors, LostSeam, SeamFilter, Sensor, Simulation};
+pub use welding::{ArcEnd, ArcPolicy, ArcStart, Voltage, Weave, WeavePattern, WeaveRate, WeaveSide};
+
+use document::Document;
+use section::Section;
+
+/// The embedded default cell: a complete, commented file to copy from.
+pub const DEFAULT_CELL_TOML: &str = include_str!("default.toml");
+
+/// A robot and its surroundings, checked. SI throughout.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cell {
+    /// The arm.
+    pub robot: Robot,
+    /// Limits of the tool's motion.
+    pub cartesian: CartesianLimits,
+    /// Tools by ascending number.
+    pub tools: Vec<Tool>,
+    /// User frames by ascending number.
+    pub user_frames: Vec<UserFrame>,
+    /// How jobs are read.
+    pub job: JobRules,
+    /// Arc start conditions by ascending number.
+    pub arc_starts: Vec<ArcStart>,
+    /// Arc end conditions by ascending number.
+    pub arc_ends: Vec<ArcEnd>,
+    /// Weave conditions by ascending number.
+    pub weaves: Vec<Weave>,
+    /// What is allowed while the arc is on.
+    pub arc: ArcPolicy,
+    /// The seam sensor.
+    pub sensor: Sensor,
+    /// Vibrations of the arm that prefilters take out; none by default.
+    pub flexible_modes: Vec<FlexibleMode>,
+    /// Inputs.
+    pub io: Io,
+    /// The control cycle.
+    pub cycle: Cycle,
+    /// Where the tool may be.
+    pub safety: Safety,
+    /// What takes the joint commands.
+    pub drive: DriveBackend,
+    /// Imperfections of the simulated drives and sensor.
+    pub simulation: Simulation,
+}
+
+impl Cell {
+    /// The embedded default cell.
+    ///
+    /// # Errors
+    /// Only if [`DEFAULT_CELL_TOML`] were wrong, which a test excludes.
+    pub fn default_cell() -> Result<Self, CellError> {
+        Self::parse("", "default cell")
+    }
+
+    /// Reads a cell file.
+    ///
+    /// # Errors
+    /// The first mistake, with its place.
+    pub fn load(path: &Path) -> Result<Self, CellError> {
+        let name = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|error| CellError {
+            file: name.clone(),
+            place: None,
+            key: String::new(),
+            problem: Problem::Unreadable(error.to_string()),
+        })?;
+        Self::parse(&text, &name)
+    }
+
+    /// Reads the text of a cell file; `name` is the file's path, for messages and for relative paths in it.
+    ///
+    /// # Errors
+    /// The first mistake, with its place.
+    pub fn parse(text: &str, name: &str) -> Result<Self, CellError> {
+        let document = Document::parse(name, text, DEFAULT_CELL_TOML)?;
+        let folder = Path::new(name).parent().unwrap_or_else(|| Path::new(""));
+        Self::read(Section::root(&document)?, folder)
+    }
+
+    fn read(mut root: Section<'_>, folder: &Path) -> Result<Self, CellError> {
+        let robot = Robot::read(&mut root.section("robot")?, folder)?;
+        let joints = robot.joints.len();
+        let cell = Self {
+            robot,
+            cartesian: CartesianLimits::read(root.section("cartesian")?)?,
+            tools: numbered(&mut root, "tool", 0..=63, Tool::read)?,
+            user_frames: numbered(&mut root, "user_frame", 1..=63, UserFrame::read)?,
+            job: JobRules::read(root.section("job")?)?,
+            arc_starts: numbered(&mut root, "arc_start", 1..=9999, ArcStart::read)?,
+            arc_ends: numbered(&mut root, "arc_end", 1..=9999, ArcEnd::read)?,
+            weaves: numbered(&mut root, "weave", 1..=9999, Weave::read)?,
+            arc: ArcPolicy::read(root.section("arc")?)?,
+            sensor: Sensor::read(root.section("sensor")?)?,
+            flexible_modes: numbered(&mut root, "flexible_mode", 1..=9, |_, table| {
+                FlexibleMode::read(table)
+            })?,
+            io: Io::read(root.section("io")?)?,
+            cycle: Cycle::read(root.section("cycle")?)?,
+            safety: Safety::read(root.section("safety")?)?,
+            drive: DriveBackend::read(root.section("drive")?)?,
+            simulation: Simulation::read(root.section("simulation")?, joints)?,
+        };
+        root.finish()?;
+        Ok(cell)
+    }
+
+    /// The tool with this number.
+    #[must_use]
+    pub fn tool(&self, number: u32) -> Option<&Tool> {
+        self.tools.iter().find(|tool| tool.number == number)
+    }
+
+    /// The user frame with this number.
+    #[must_use]
+    pub fn user_frame(&self, number: u32) -> Option<&UserFrame> {
+        self.user_frames.iter().find(|frame| frame.number == number)
+    }
+
+    /// The arc start condition ASF#(number).
+    #[must_use]
+    pub fn arc_start(&self, number: u32) -> Option<&ArcStart> {
+        self.arc_starts.iter().find(|condition| condition.number == number)
+    }
+
+    /// The arc end condition AEF#(number).
+    #[must_use]
+    pub fn arc_end(&self, number: u32) -> Option<&ArcEnd> {
+        self.arc_ends.iter().find(|condition| condition.number == number)
+    }
+
+    /// The weave condition WEV#(number).
+    #[must_use]
+    pub fn weave(&self, number: u32) -> Option<&Weave> {
+        self.weaves.iter().find(|condition| condition.number == number)
+    }
+}
+
+fn numbered<'a, T>(
+    root: &mut Section<'a>,
+    key: &'static str,
+    range: std::ops::RangeInclusive<u32>,
+    read: impl Fn(u32, Section<'a>) -> Result<T, CellError>,
+) -> Result<Vec<T>, CellError> {
+    root.numbered(key, range)?.into_iter().map(|(number, table)| read(number, table)).collect()
+}

@@ -1,0 +1,120 @@
+//! Limits of the tool's motion, the cycle, safety, flexible modes and the drive back end.
+
+use seamline::geometry::Vector3;
+
+use super::error::CellError;
+use super::section::{Section, Unit};
+
+/// Limits of the tool centre point's motion along a path. m, rad, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CartesianLimits {
+    /// Greatest speed.
+    pub speed: f64,
+    /// Greatest acceleration along the path.
+    pub acceleration: f64,
+    /// Greatest jerk along the path.
+    pub jerk: f64,
+    /// Greatest speed of turning.
+    pub rotation_speed: f64,
+    /// Greatest acceleration of turning.
+    pub rotation_acceleration: f64,
+    /// Greatest jerk of turning.
+    pub rotation_jerk: f64,
+    /// Greatest jerk of a weave pattern, across the path.
+    pub weave_jerk: f64,
+    /// Greatest jerk of a seam correction, across the path.
+    pub correction_jerk: f64,
+}
+
+impl CartesianLimits {
+    pub(super) fn read(mut section: Section<'_>) -> Result<Self, CellError> {
+        let mut length = |key| section.number(key, Unit::Milli, 0.001..=1e9);
+        let (speed, acceleration) = (length("speed_mm_s")?, length("acceleration_mm_s2")?);
+        let jerk = length("jerk_mm_s3")?;
+        let (weave_jerk, correction_jerk) = (length("weave_jerk_mm_s3")?, length("correction_jerk_mm_s3")?);
+        let mut angle = |key| section.number(key, Unit::Degree, 0.001..=1e9);
+        let limits = Self {
+            speed,
+            acceleration,
+            jerk,
+            rotation_speed: angle("rotation_speed_deg_s")?,
+            rotation_acceleration: angle("rotation_acceleration_deg_s2")?,
+            rotation_jerk: angle("rotation_jerk_deg_s3")?,
+            weave_jerk,
+            correction_jerk,
+        };
+        section.finish()?;
+        Ok(limits)
+    }
+}
+
+/// The control cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cycle {
+    /// Seconds from one command to the next, 0.1–20 ms.
+    pub period: f64,
+}
+
+impl Cycle {
+    pub(super) fn read(mut section: Section<'_>) -> Result<Self, CellError> {
+        let cycle = Self { period: section.number("period_ms", Unit::Milli, 0.1..=20.0)? };
+        section.finish()?;
+        Ok(cycle)
+    }
+}
+
+/// Where the tool centre point may be: an axis-aligned box in the robot's base frame, in metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Safety {
+    /// Corner with the least coordinates.
+    pub workspace_min: Vector3,
+    /// Corner with the greatest coordinates.
+    pub workspace_max: Vector3,
+}
+
+impl Safety {
+    pub(super) fn read(mut section: Section<'_>) -> Result<Self, CellError> {
+        let min: [f64; 3] = section.array("workspace_min_mm", Unit::Milli, -100_000.0..=100_000.0)?;
+        let max: [f64; 3] = section.array("workspace_max_mm", Unit::Milli, -100_000.0..=100_000.0)?;
+        for (low, high) in min.into_iter().zip(max) {
+            section.ordered(("workspace_min_mm", low), ("workspace_max_mm", high))?;
+        }
+        section.finish()?;
+        Ok(Self { workspace_min: min.into(), workspace_max: max.into() })
+    }
+}
+
+/// A vibration of the arm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlexibleMode {
+    /// Undamped natural frequency in Hz.
+    pub frequency_hz: f64,
+    /// Damping ratio ζ, 0 ≤ ζ < 1.
+    pub damping: f64,
+}
+
+impl FlexibleMode {
+    pub(super) fn read(mut table: Section<'_>) -> Result<Self, CellError> {
+        let mode = Self {
+            frequency_hz: table.number("frequency_hz", Unit::Plain, 0.1..=500.0)?,
+            damping: table.number("damping", Unit::Plain, 0.0..=0.99)?,
+        };
+        table.finish()?;
+        Ok(mode)
+    }
+}
+
+/// What takes the joint commands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DriveBackend {
+    /// Servo drives and encoders in software.
+    Simulated,
+}
+
+impl DriveBackend {
+    pub(super) fn read(mut section: Section<'_>) -> Result<Self, CellError> {
+        let backend = section.choice("backend", &[("simulated", Self::Simulated)])?;
+        section.finish()?;
+        Ok(backend)
+    }
+}

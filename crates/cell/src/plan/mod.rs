@@ -1,0 +1,3 @@
+//! Planning: everything that is decided before a motion starts.
+
+pub mod timing;

@@ -1,0 +1,233 @@
+//! The judge: how much of each limit a motion along a path takes, between the samples too.
+//!
+//! A piece is sampled with exact derivatives in time and bisected until
+//! - both ends of an interval predict each other (two-point Hermite formulae, of position and of acceleration), so that
+//!   nothing hides in between: a needle-sharp turn of a wrist shows as a displacement that nothing at the ends foretells;
+//! - the middle lies near the chord wherever the limit is near. The peak of the parabola through the three samples
+//!   then bounds what happens between them.
+
+use super::motion::{PathState, TimingPiece};
+use super::{JointJet, JointPath, PathLimits, TimingError, TimingLimits};
+
+/// First intervals: this long at most, in seconds, but not more of them than `FIRST_INTERVALS` a piece.
+const FIRST_INTERVAL: f64 = 2.5e-3;
+const FIRST_INTERVALS: f64 = 64.0;
+/// Bound on bisections: an interval of 100 s comes down to 1e-10 s.
+const DEPTH: usize = 40;
+/// Bound on bisections that only sharpen the bound.
+const SHARPENING_DEPTH: usize = 8;
+/// From this share of a limit on, the bound between samples is made sharp; the second difference allowed then.
+const NEAR: f64 = 0.9;
+const BEND: f64 = 0.02;
+/// A jerk, as a share of its limit, that may stay unseen in an interval of at most `SHARP` seconds.
+const UNSEEN: f64 = 0.02;
+const SHARP: f64 = 5e-3;
+/// Rounding of joint positions in radians, and of accelerations as a share of the limit.
+const POSITION_NOISE: f64 = 1e-9;
+const ACCELERATION_NOISE: f64 = 1e-6;
+/// A jump between places that rounding can hardly tell apart: as a share of the acceleration limit.
+const JUMP: f64 = 0.01;
+
+/// Highest share of each limit that a stretch of motion takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Load<const N: usize> {
+    /// Per order (velocity, acceleration, jerk) and joint.
+    pub(super) joints: [[f64; N]; 3],
+    /// Per order, of the path's own limits.
+    pub(super) path: [f64; 3],
+}
+
+impl<const N: usize> Load<N> {
+    pub(super) const NONE: Self = Self { joints: [[0.0; N]; 3], path: [0.0; 3] };
+
+    pub(super) fn raise(&mut self, other: &Self) {
+        for (mine, theirs) in self.joints.iter_mut().zip(&other.joints) {
+            for (mine, &theirs) in mine.iter_mut().zip(theirs) {
+                *mine = mine.max(theirs);
+            }
+        }
+        for (mine, &theirs) in self.path.iter_mut().zip(&other.path) {
+            *mine = mine.max(theirs);
+        }
+    }
+
+    /// Highest share of each order.
+    pub(super) fn orders(&self) -> [f64; 3] {
+        core::array::from_fn(|order| self.joints[order].iter().fold(self.path[order], |most, &x| most.max(x)))
+    }
+
+    /// Factor on time that brings every share down to 1.
+    pub(super) fn stretch(&self) -> f64 {
+        let [velocity, acceleration, jerk] = self.orders();
+        velocity.max(acceleration.sqrt()).max(jerk.cbrt())
+    }
+}
+
+/// The joints in motion at one instant.
+#[derive(Clone, Copy)]
+struct Sample<const N: usize> {
+    time: f64,
+    place: f64,
+    position: [f64; N],
+    /// Velocity, acceleration and jerk as signed shares of their limits.
+    shares: [[f64; N]; 3],
+    path: [f64; 3],
+}
+
+/// The joints' derivatives in time on a path.
+fn in_time<const N: usize>(jet: &JointJet<N>, state: &PathState) -> [[f64; N]; 3] {
+    let PathState { velocity: v, acceleration: a, jerk: j, .. } = *state;
+    [
+        jet.velocity.map(|d1| d1 * v),
+        core::array::from_fn(|i| jet.acceleration[i] * v * v + jet.velocity[i] * a),
+        core::array::from_fn(|i| {
+            jet.jerk[i] * v * v * v + 3.0 * jet.acceleration[i] * v * a + jet.velocity[i] * j
+        }),
+    ]
+}
+
+/// Judges motions along one path under one set of limits.
+pub(super) struct Check<'a, const N: usize, P> {
+    path: &'a mut P,
+    length: f64,
+    joints: &'a TimingLimits<N>,
+    limits: &'a PathLimits,
+}
+
+impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
+    pub(super) fn new(path: &'a mut P, joints: &'a TimingLimits<N>, limits: &'a PathLimits) -> Self {
+        let length = path.length();
+        Self { path, length, joints, limits }
+    }
+
+    /// The load of a whole motion.
+    pub(super) fn pieces(&mut self, pieces: &[TimingPiece]) -> Result<Load<N>, TimingError<P::Error>> {
+        let mut load = Load::NONE;
+        for piece in pieces {
+            load.raise(&self.piece(piece, |_, _, _| {})?);
+        }
+        Ok(load)
+    }
+
+    /// The load of one piece; `each` is told every interval's place (from, to) and load.
+    pub(super) fn piece(
+        &mut self,
+        piece: &TimingPiece,
+        mut each: impl FnMut(f64, f64, &Load<N>),
+    ) -> Result<Load<N>, TimingError<P::Error>> {
+        let intervals = (piece.duration / FIRST_INTERVAL).ceil().clamp(1.0, FIRST_INTERVALS);
+        let mut load = Load::NONE;
+        let mut start = self.sample(piece, 0.0)?;
+        for index in 1..=intervals as usize {
+            let end = self.sample(piece, piece.duration * index as f64 / intervals)?;
+            load.raise(&self.interval(piece, &start, &end, &mut each)?);
+            start = end;
+        }
+        Ok(load)
+    }
+
+    fn sample(&mut self, piece: &TimingPiece, time: f64) -> Result<Sample<N>, TimingError<P::Error>> {
+        let state = piece.at(time);
+        let place = state.position.clamp(0.0, self.length);
+        let jet = self.path.jet(place).map_err(|error| TimingError::Path { position: place, error })?;
+        let [velocity, acceleration, jerk] = in_time(&jet, &state);
+        let shares = [
+            core::array::from_fn(|i| velocity[i] / self.joints.velocity[i]),
+            core::array::from_fn(|i| acceleration[i] / self.joints.acceleration[i]),
+            core::array::from_fn(|i| jerk[i] / self.joints.jerk[i]),
+        ];
+        let finite = |joint: &usize| !shares.iter().all(|order| order[*joint].is_finite());
+        if let Some(joint) = (0..N).find(finite) {
+            return Err(TimingError::Discontinuous { position: place, joint });
+        }
+        let PathLimits { speed, acceleration, jerk } = *self.limits;
+        let path = [state.velocity / speed, state.acceleration / acceleration, state.jerk / jerk];
+        Ok(Sample { time, place, position: jet.position, shares, path })
+    }
+
+    /// Bisects one interval until every part can be vouched for. The right ends of what is still to be done lie on
+    /// a stack, the nearest on top.
+    fn interval(
+        &mut self,
+        piece: &TimingPiece,
+        start: &Sample<N>,
+        end: &Sample<N>,
+        each: &mut impl FnMut(f64, f64, &Load<N>),
+    ) -> Result<Load<N>, TimingError<P::Error>> {
+        let mut load = Load::NONE;
+        let mut left = *start;
+        let mut ends = [(*end, 0); DEPTH + 1];
+        let mut waiting = 1;
+        // Each turn either finishes an interval or splits one, and none is split deeper than DEPTH.
+        while waiting > 0 {
+            let (right, depth) = ends[waiting - 1];
+            let middle = self.sample(piece, (left.time + right.time) / 2.0)?;
+            let (part, bend) = peak(&left, &middle, &right);
+            let foretold = self.foretold(&left, &right, &part);
+            if !foretold && depth == DEPTH {
+                self.refuse_jump(&left, &right)?;
+            }
+            if depth < DEPTH && (!foretold || (bend && depth < SHARPENING_DEPTH)) {
+                ends[waiting - 1].1 = depth + 1;
+                ends[waiting] = (middle, depth + 1);
+                waiting += 1;
+                continue;
+            }
+            each(left.place, right.place, &part);
+            load.raise(&part);
+            left = right;
+            waiting -= 1;
+        }
+        Ok(load)
+    }
+
+    /// Whether the two ends of an interval predict each other.
+    fn foretold(&self, start: &Sample<N>, end: &Sample<N>, load: &Load<N>) -> bool {
+        let t = end.time - start.time;
+        let sharp = t.min(SHARP);
+        (0..N).all(|i| {
+            let change = |order: usize| end.shares[order][i] - start.shares[order][i];
+            let sum = |order: usize| end.shares[order][i] + start.shares[order][i];
+            let limit = [self.joints.velocity[i], self.joints.acceleration[i], self.joints.jerk[i]];
+            let unseen = UNSEEN * limit[2] * load.joints[2][i].max(1.0);
+            // q₁ − q₀ = h/2 (q̇₀+q̇₁) − h²/10 (q̈₁−q̈₀) + h³/120 (q⃛₀+q⃛₁) + O(h⁷)
+            let position = end.position[i] - start.position[i] - t / 2.0 * limit[0] * sum(0)
+                + t * t / 10.0 * limit[1] * change(1)
+                - t * t * t / 120.0 * limit[2] * sum(2);
+            // q̈₁ − q̈₀ = h/2 (q⃛₀+q⃛₁) + O(h³)
+            let acceleration = limit[1] * change(1) - t / 2.0 * limit[2] * sum(2);
+            position.abs() <= unseen * sharp * sharp * sharp + POSITION_NOISE
+                && acceleration.abs() <= 5.0 * unseen * sharp + ACCELERATION_NOISE * limit[1]
+        })
+    }
+
+    /// At the end of all bisection: an error where a joint's position or acceleration jumps.
+    fn refuse_jump(&self, start: &Sample<N>, end: &Sample<N>) -> Result<(), TimingError<P::Error>> {
+        let jumps = |i: &usize| {
+            let position = (end.position[*i] - start.position[*i]).abs();
+            let acceleration = (end.shares[1][*i] - start.shares[1][*i]).abs();
+            position > 1e3 * POSITION_NOISE || acceleration > JUMP
+        };
+        match (0..N).find(jumps) {
+            Some(joint) => Err(TimingError::Discontinuous { position: end.place, joint }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Bound on the shares between three evenly spaced samples, and whether it deserves sharpening.
+fn peak<const N: usize>(start: &Sample<N>, middle: &Sample<N>, end: &Sample<N>) -> (Load<N>, bool) {
+    let mut sharpen = false;
+    let mut bound = |a: f64, m: f64, b: f64| {
+        // The parabola through the samples rises above the highest of them by at most an eighth of the second difference.
+        let bend = (a - 2.0 * m + b).abs();
+        let bound = a.abs().max(m.abs()).max(b.abs()) + bend / 8.0;
+        sharpen |= bound > NEAR && bend > BEND * bound;
+        bound
+    };
+    let joints = core::array::from_fn(|order| {
+        core::array::from_fn(|i| bound(start.shares[order][i], middle.shares[order][i], end.shares[order][i]))
+    });
+    let path = core::array::from_fn(|order| bound(start.path[order], middle.path[order], end.path[order]));
+    (Load { joints, path }, sharpen)
+}

@@ -1,0 +1,202 @@
+//! The result: the path coordinate as a function of time, piece by piece.
+
+/// The motion along a path at one instant; the unit of length is the path coordinate's.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PathState {
+    /// Path coordinate s.
+    pub position: f64,
+    /// ṡ, per second.
+    pub velocity: f64,
+    /// s̈, per second².
+    pub acceleration: f64,
+    /// s⃛, per second³.
+    pub jerk: f64,
+}
+
+/// A stretch of motion along the path: a polynomial of degree five in time, given by its derivatives at the start.
+///
+/// A plain S-curve has pieces of constant jerk (`snap` and `crackle` are zero). In a [`Timing`], position, velocity
+/// and acceleration are continuous from piece to piece; the jerk may step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TimingPiece {
+    /// Duration in seconds.
+    pub duration: f64,
+    /// Path coordinate at the start.
+    pub position: f64,
+    /// First derivative at the start.
+    pub velocity: f64,
+    /// Second derivative at the start.
+    pub acceleration: f64,
+    /// Third derivative at the start.
+    pub jerk: f64,
+    /// Fourth derivative at the start.
+    pub snap: f64,
+    /// Fifth derivative, the same all along the piece.
+    pub crackle: f64,
+}
+
+impl TimingPiece {
+    /// The piece of constant `jerk` that starts in `state`.
+    pub(super) fn constant_jerk(state: &PathState, jerk: f64, duration: f64) -> Self {
+        let PathState { position, velocity, acceleration, .. } = *state;
+        Self { duration, position, velocity, acceleration, jerk, snap: 0.0, crackle: 0.0 }
+    }
+
+    /// The piece that joins two states in position, velocity and acceleration.
+    pub(super) fn joining(start: &PathState, end: &PathState, duration: f64) -> Self {
+        let t = duration;
+        let PathState { position, velocity, acceleration, .. } = *start;
+        // What is missing at the end if the piece went on with the start's acceleration; each scaled to a length.
+        let gap = end.position - (position + t * (velocity + t * acceleration / 2.0));
+        let gap_velocity = (end.velocity - velocity - t * acceleration) * t;
+        let gap_acceleration = (end.acceleration - acceleration) * t * t;
+        let t3 = t * t * t;
+        Self {
+            duration,
+            position,
+            velocity,
+            acceleration,
+            jerk: (60.0 * gap - 24.0 * gap_velocity + 3.0 * gap_acceleration) / t3,
+            snap: (-360.0 * gap + 168.0 * gap_velocity - 24.0 * gap_acceleration) / (t3 * t),
+            crackle: (720.0 * gap - 360.0 * gap_velocity + 60.0 * gap_acceleration) / (t3 * t * t),
+        }
+    }
+
+    /// The state `time` seconds after the piece's start.
+    #[must_use]
+    pub fn at(&self, time: f64) -> PathState {
+        let t = time;
+        let jerk = self.jerk + t * (self.snap + t * self.crackle / 2.0);
+        let acceleration =
+            self.acceleration + t * (self.jerk + t * (self.snap / 2.0 + t * self.crackle / 6.0));
+        let velocity = self.velocity
+            + t * (self.acceleration
+                + t * (self.jerk / 2.0 + t * (self.snap / 6.0 + t * self.crackle / 24.0)));
+        let position = self.position
+            + t * (self.velocity
+                + t * (self.acceleration / 2.0
+                    + t * (self.jerk / 6.0 + t * (self.snap / 24.0 + t * self.crackle / 120.0))));
+        PathState { position, velocity, acceleration, jerk }
+    }
+
+    /// The state at the piece's end.
+    #[must_use]
+    pub fn end(&self) -> PathState {
+        self.at(self.duration)
+    }
+
+    /// The same way in `factor` times the time.
+    #[must_use]
+    pub(super) fn stretched(&self, factor: f64) -> Self {
+        let (f1, f2, f3) = (factor, factor * factor, factor * factor * factor);
+        Self {
+            duration: self.duration * f1,
+            position: self.position,
+            velocity: self.velocity / f1,
+            acceleration: self.acceleration / f2,
+            jerk: self.jerk / f3,
+            snap: self.snap / (f3 * f1),
+            crackle: self.crackle / (f3 * f2),
+        }
+    }
+}
+
+/// How a timing came about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TimingKind {
+    /// The S-curve of the path limits alone: no joint has to slow it.
+    Plain,
+    /// Near time-optimal under the joints' limits.
+    Optimized,
+    /// The S-curve stretched as a whole until every joint keeps its limits: always possible, seldom fast.
+    Stretched,
+}
+
+/// Order of a limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// Velocity.
+    Velocity,
+    /// Acceleration.
+    Acceleration,
+    /// Jerk.
+    Jerk,
+}
+
+/// A stretch of the path where the motion is slower than its programmed speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slowdown {
+    /// Path coordinate where it starts.
+    pub from: f64,
+    /// Path coordinate where it ends.
+    pub to: f64,
+    /// Path coordinate of the least speed.
+    pub place: f64,
+    /// The least speed.
+    pub speed: f64,
+    /// The joint that causes it, counted from 0.
+    pub joint: usize,
+    /// Which of this joint's limits is the tightest.
+    pub order: Order,
+}
+
+/// The motion along a whole path: s(t) from rest to rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Timing {
+    pieces: Vec<TimingPiece>,
+    /// Time at which each piece starts.
+    starts: Vec<f64>,
+    duration: f64,
+    kind: TimingKind,
+    slowdowns: Vec<Slowdown>,
+}
+
+impl Timing {
+    pub(super) fn new(pieces: Vec<TimingPiece>, kind: TimingKind, slowdowns: Vec<Slowdown>) -> Self {
+        let mut duration = 0.0;
+        let starts = pieces
+            .iter()
+            .map(|piece| {
+                let start = duration;
+                duration += piece.duration;
+                start
+            })
+            .collect();
+        Self { pieces, starts, duration, kind, slowdowns }
+    }
+
+    /// Duration in seconds.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The pieces, in order.
+    #[must_use]
+    pub fn pieces(&self) -> &[TimingPiece] {
+        &self.pieces
+    }
+
+    /// How the timing came about.
+    #[must_use]
+    pub fn kind(&self) -> TimingKind {
+        self.kind
+    }
+
+    /// Where the motion is more than 1 % slower than the path limits alone would have it, in order of the path.
+    #[must_use]
+    pub fn slowdowns(&self) -> &[Slowdown] {
+        &self.slowdowns
+    }
+
+    /// The state at `time` seconds after the start; before the start it is the start, after the end the end. Finding
+    /// the piece takes logarithmic time; who walks through in order may use [`Timing::pieces`] instead.
+    #[must_use]
+    pub fn at(&self, time: f64) -> PathState {
+        let index = self.starts.partition_point(|&start| start <= time).saturating_sub(1);
+        match (self.pieces.get(index), self.starts.get(index)) {
+            (Some(piece), Some(start)) => piece.at((time - start).clamp(0.0, piece.duration)),
+            _ => PathState::default(),
+        }
+    }
+}

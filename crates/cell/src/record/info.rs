@@ -1,0 +1,161 @@
+//! What a run was meant to do: the data that recorded samples are held against.
+
+use seamline::path::{Curve, Measure, Path};
+
+/// A joint's name and limits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointInfo {
+    /// Name on the axis, such as `S` or `L`.
+    pub name: String,
+    /// Least and greatest position, in radians.
+    pub position: [f64; 2],
+    /// Velocity limit, in rad/s.
+    pub velocity: f64,
+    /// Acceleration limit, in rad/s².
+    pub acceleration: f64,
+    /// Jerk limit, in rad/s³.
+    pub jerk: f64,
+}
+
+/// What a run's figures may be at most for the run to count as good.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Acceptance {
+    /// Distance of the commanded tool centre point from the programmed line or arc, in metres.
+    pub path_deviation: f64,
+    /// Angle between the commanded orientation and the programmed one, in radians.
+    pub orientation_deviation: f64,
+    /// Relative error of the speed in the constant part of a weld.
+    pub weld_speed_error: f64,
+    /// Joint velocity and acceleration, as fractions of their limits.
+    pub joint: f64,
+    /// Joint jerk as a fraction of its limit. Third differences of samples overshoot a jerk that switches within a
+    /// cycle, so that it is a little above 1.
+    pub joint_jerk: f64,
+}
+
+impl Default for Acceptance {
+    fn default() -> Self {
+        Self {
+            path_deviation: 1e-6,
+            orientation_deviation: 1e-6,
+            weld_speed_error: 0.01,
+            joint: 1.0,
+            joint_jerk: 1.01,
+        }
+    }
+}
+
+/// Which job ran on which robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunInfo {
+    /// Name of the job.
+    pub job: String,
+    /// Name of the robot.
+    pub robot: String,
+    /// The robot's joints from the base on, at most [`MAX_JOINTS`](super::MAX_JOINTS).
+    pub joints: Vec<JointInfo>,
+    /// Cycle time in seconds.
+    pub period: f64,
+    /// The bounds that the figures are held against.
+    pub acceptance: Acceptance,
+}
+
+/// What a segment programs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SegmentKind {
+    /// A move in joint space: MOVJ.
+    Joint,
+    /// A line or an arc of the tool centre point in the robot frame: MOVL, MOVC.
+    Path(Path),
+    /// Standing still for a time.
+    Dwell,
+}
+
+impl SegmentKind {
+    /// The job language's word.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Joint => "MOVJ",
+            Self::Path(path) => match path.curve() {
+                Curve::Line { .. } => "MOVL",
+                Curve::Arc(_) => "MOVC",
+            },
+            Self::Dwell => "dwell",
+        }
+    }
+}
+
+/// One planned segment of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SegmentInfo {
+    /// Running number, from 1 on, rising: the number that samples carry.
+    pub segment: u32,
+    /// Line of the job file, counted from 1.
+    pub line: u32,
+    /// What it programs.
+    pub kind: SegmentKind,
+    /// Programmed speed of the tool centre point in m/s (rad/s for a turn on the spot), where there is one.
+    pub speed: Option<f64>,
+    /// The arc is lit.
+    pub arc: bool,
+    /// From where to where on the path (m from its start) the plan holds the programmed speed: the end of acceleration
+    /// and the start of deceleration. None where the speed is never reached.
+    pub constant_part: Option<[f64; 2]>,
+}
+
+impl SegmentInfo {
+    /// Length of the path of the tool centre point, in metres; 0 where it only turns, moves in joint space or rests.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        match &self.kind {
+            SegmentKind::Path(path) if path.measure() == Measure::Length => path.length(),
+            _ => 0.0,
+        }
+    }
+}
+
+/// Something that happened at an instant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// Time since the start of the run, in seconds.
+    pub time: f64,
+    /// Line of the job file, counted from 1; 0 for none.
+    pub line: u32,
+    /// What kind of thing.
+    pub kind: EventKind,
+    /// What exactly, for people.
+    pub text: String,
+}
+
+/// Kinds of events.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EventKind {
+    /// The arc was lit. Found in the samples; need not be reported.
+    ArcOn,
+    /// The arc was put out. Found in the samples; need not be reported.
+    ArcOff,
+    /// The robot stands for a programmed time. Found in the samples; need not be reported.
+    Dwell,
+    /// An output was set or a message shown.
+    Output,
+    /// Something the user should know: an instruction accepted but not executed, a zone that stops exactly.
+    Notice,
+    /// A fault stopped the run.
+    Fault,
+}
+
+impl EventKind {
+    /// A word for it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ArcOn => "arc on",
+            Self::ArcOff => "arc off",
+            Self::Dwell => "dwell",
+            Self::Output => "output",
+            Self::Notice => "notice",
+            Self::Fault => "fault",
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! Blocks: what a planner hands to the cycle, piece by piece, through a bounded queue.
+
+use crate::geometry::{Pose, PoseJet};
+use crate::otg::Trajectory;
+use crate::path::{Path, PathState, TimingPiece};
+
+/// Most pieces of timing in one block; a longer motion is several blocks.
+pub const BLOCK_PIECES: usize = 48;
+
+/// One entry of the queue.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Command<const N: usize> {
+    /// Move.
+    Move(Block<N>),
+    /// Stand still for a time that override does not change.
+    Dwell {
+        /// Line of the job.
+        line: u32,
+        /// Running number of the segment.
+        segment: u32,
+        /// Seconds.
+        duration: f64,
+    },
+    /// Light the arc or put it out.
+    Arc {
+        /// Whether it burns from here on.
+        on: bool,
+    },
+    /// A place in the program that the status reports when it is passed. Numbers rise.
+    Marker(u32),
+    /// The program ends here.
+    End,
+}
+
+/// A stretch of motion with its geometry and timing. Blocks follow each other without a jump in joint position,
+/// velocity and acceleration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Block<const N: usize> {
+    /// Line of the job.
+    pub line: u32,
+    /// Running number of the segment.
+    pub segment: u32,
+    /// Tool centre point in the flange frame.
+    pub flange_from_tcp: Pose,
+    /// The arm is at rest where the block begins.
+    pub starts_at_rest: bool,
+    /// The arm is at rest where the block ends.
+    pub ends_at_rest: bool,
+    /// Where and when.
+    pub motion: Motion<N>,
+}
+
+/// How a block moves.
+#[expect(clippy::large_enum_variant, reason = "without a heap the larger one sets the size of the queue's entries")]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Motion<const N: usize> {
+    /// Each joint on its own trajectory.
+    Joint(Trajectory<N>),
+    /// The tool centre point along a path.
+    Path(PathMotion),
+}
+
+/// A path, and the motion along it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathMotion {
+    /// The tool centre point's path in the base frame.
+    pub path: Path,
+    tcp_from_flange: Pose,
+    pieces: [TimingPiece; BLOCK_PIECES],
+    /// When each piece begins, in seconds from the block's start.
+    starts: [f64; BLOCK_PIECES],
+    count: usize,
+    duration: f64,
+}
+
+impl PathMotion {
+    /// A motion along `path` with the tool at `flange_from_tcp`. `None` where there are no pieces or more than
+    /// [`BLOCK_PIECES`].
+    #[must_use]
+    pub fn new(path: Path, flange_from_tcp: &Pose, timing: &[TimingPiece]) -> Option<Self> {
+        if timing.is_empty() || timing.len() > BLOCK_PIECES {
+            return None;
+        }
+        let (mut pieces, mut starts, mut duration) = ([TimingPiece::default(); BLOCK_PIECES], [0.0; BLOCK_PIECES], 0.0);
+        for (k, piece) in timing.iter().enumerate() {
+            (pieces[k], starts[k]) = (*piece, duration);
+            duration += piece.duration;
+        }
+        let tcp_from_flange = flange_from_tcp.inverse();
+        Some(Self { path, tcp_from_flange, pieces, starts, count: timing.len(), duration })
+    }
+
+    /// Duration in seconds of programme time.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The path coordinate at a time since the block's start.
+    #[must_use]
+    pub fn state(&self, time: f64) -> PathState {
+        let after = self.starts[..self.count].partition_point(|start| *start <= time);
+        let k = after.saturating_sub(1);
+        self.pieces[k].at((time - self.starts[k]).clamp(0.0, self.pieces[k].duration))
+    }
+
+    /// The flange's motion in programme time at a time since the block's start.
+    #[must_use]
+    pub fn flange(&self, time: f64) -> PoseJet {
+        let state = self.state(time);
+        let tcp = self.path.jet(state.position).in_time([state.velocity, state.acceleration, state.jerk]);
+        tcp.attached(&self.tcp_from_flange)
+    }
+}
+
+impl<const N: usize> Block<N> {
+    /// Duration in seconds of programme time.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        match &self.motion {
+            Motion::Joint(trajectory) => trajectory.duration(),
+            Motion::Path(motion) => motion.duration(),
+        }
+    }
+}
