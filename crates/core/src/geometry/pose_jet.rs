@@ -35,6 +35,15 @@ impl PoseJet {
         Self { pose: self.pose * offset, linear: [l1 + d1, l2 + d2, l3 + d3], angular: self.angular }
     }
 
+    /// The jet with respect to time, where the present parameter s moves with derivatives ṡ, s̈, s⃛.
+    #[must_use]
+    pub fn in_time(&self, [v, a, j]: [f64; 3]) -> Self {
+        let chain = |[d1, d2, d3]: [Vector3; 3]| {
+            [d1 * v, d2 * (v * v) + d1 * a, d3 * (v * v * v) + d2 * (3.0 * v * a) + d1 * j]
+        };
+        Self { pose: self.pose, linear: chain(self.linear), angular: chain(self.angular) }
+    }
+
     /// The jet of `frame · self`, seen from another fixed frame.
     #[must_use]
     pub fn seen_from(&self, frame: &Pose) -> Self {
@@ -47,6 +56,22 @@ impl PoseJet {
 mod tests {
     use super::*;
     use crate::geometry::Rotation;
+
+    /// s(t) = t² on the screw motion below: the jet in time against differences of the pose in time.
+    #[test]
+    fn chain_rule_to_time() {
+        let at = |t: f64| jet(t * t).in_time([2.0 * t, 2.0, 0.0]);
+        let (t, h) = (0.7, 1e-5);
+        let (before, here, after) = (at(t - h), at(t), at(t + h));
+        let velocity = (after.pose.translation.vector - before.pose.translation.vector) / (2.0 * h);
+        assert!((here.linear[0] - velocity).norm() < 1e-8);
+        for order in 0..2 {
+            let linear = (after.linear[order] - before.linear[order]) / (2.0 * h);
+            let angular = (after.angular[order] - before.angular[order]) / (2.0 * h);
+            assert!((here.linear[order + 1] - linear).norm() < 1e-7);
+            assert!((here.angular[order + 1] - angular).norm() < 1e-7);
+        }
+    }
 
     /// A screw motion with uneven speed, differentiated by hand for the parent and numerically for the attached frame.
     fn jet(t: f64) -> PoseJet {

@@ -7,9 +7,11 @@
 mod curve;
 mod orientation;
 mod rotation_vector;
+mod timing;
 
 pub use curve::{Arc, ArcError, Curve};
 pub use orientation::{Geodesic, Orientation, Through};
+pub use timing::{PathState, TimingPiece};
 
 use crate::geometry::{Pose, PoseJet};
 

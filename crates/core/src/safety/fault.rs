@@ -79,15 +79,15 @@ pub enum Fault {
     EmergencyStop,
 }
 
-/// How the arm is brought to rest, in the words of IEC 60204-1, with category 1 told apart by its way.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// How the arm is brought to rest, in the words of IEC 60204-1; from the mildest to the severest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StopCategory {
-    /// Power off at once: nothing can be commanded any more.
-    Category0,
-    /// Each joint decelerates within its limits, off the path: the path cannot be followed further. Then power off.
-    Category1,
     /// Deceleration along the path; power stays on, and the job can go on.
     Category2,
+    /// Each joint decelerates within its limits, off the path, which cannot be followed further. Then power off.
+    Category1,
+    /// Power off at once: nothing can be commanded any more.
+    Category0,
 }
 
 impl Fault {
