@@ -8,6 +8,7 @@
 //! | [`math`] | elementary functions with or without std |
 //! | [`geometry`] | poses, Euler angles, poses with their derivatives along a path |
 //! | [`safety`] | the envelope every command must lie in, faults and stops |
+//! | [`kinematics`] | arm models: forward, inverse, Jacobian, joint derivatives along a path, singularities |
 //! | [`path`] | lines and arcs with orientation, as functions of the path coordinate |
 //!
 //! # Units and frames
@@ -27,6 +28,7 @@ extern crate std;
 pub mod control;
 pub mod drive;
 pub mod geometry;
+pub mod kinematics;
 pub mod math;
 pub mod path;
 pub mod safety;

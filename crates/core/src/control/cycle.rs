@@ -9,7 +9,7 @@ use super::telemetry::{CycleOutput, StageClock, Status};
 use crate::drive::{DriveFault, JointCommand};
 use crate::geometry::Pose;
 use crate::kinematics::{JointJet, Kinematics};
-use crate::safety::{Envelope, Fault, JointLimits, StopCategory, WorkspaceBox};
+use crate::safety::{Envelope, Fault, MotionLimits, StopCategory, WorkspaceBox};
 
 /// Least distance of the look-ahead's samples in seconds.
 const SAMPLE_SPACING: f64 = 1e-3;
@@ -20,7 +20,7 @@ pub struct CycleConfig<const N: usize> {
     /// Time between two cycles, in seconds.
     pub period: f64,
     /// Limits of the joints.
-    pub limits: JointLimits<N>,
+    pub limits: MotionLimits<N>,
     /// Where the tool centre point may be.
     pub workspace: WorkspaceBox,
     /// The tool until a block brings its own.
@@ -191,7 +191,7 @@ impl<const N: usize, K: Kinematics<N>> Cycle<N, K> {
         // A wrong override is none: NaN stops.
         let speed_override = if speed_override.is_finite() { speed_override.clamp(0.0, 1.0) } else { 0.0 };
         let goal = if self.mode == Mode::Running { speed_override } else { 0.0 };
-        let JointLimits { acceleration, jerk, .. } = self.config.limits;
+        let MotionLimits { acceleration, jerk, .. } = self.config.limits;
         let limits = RateLimits { acceleration, jerk };
         self.program.advance(goal, source, &self.kinematics, &limits, self.config.period)
     }

@@ -41,9 +41,11 @@ impl TimingPiece {
     pub fn at(&self, time: f64) -> PathState {
         let t = time;
         let jerk = self.jerk + t * (self.snap + t * self.crackle / 2.0);
-        let acceleration = self.acceleration + t * (self.jerk + t * (self.snap / 2.0 + t * self.crackle / 6.0));
+        let acceleration =
+            self.acceleration + t * (self.jerk + t * (self.snap / 2.0 + t * self.crackle / 6.0));
         let velocity = self.velocity
-            + t * (self.acceleration + t * (self.jerk / 2.0 + t * (self.snap / 6.0 + t * self.crackle / 24.0)));
+            + t * (self.acceleration
+                + t * (self.jerk / 2.0 + t * (self.snap / 6.0 + t * self.crackle / 24.0)));
         let position = self.position
             + t * (self.velocity
                 + t * (self.acceleration / 2.0

@@ -5,7 +5,7 @@ use crate::geometry::Vector3;
 
 /// Limits of the joints. Velocity, acceleration and jerk are symmetric and positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct JointLimits<const N: usize> {
+pub struct MotionLimits<const N: usize> {
     /// Lowest and highest position.
     pub position: [(f64, f64); N],
     /// Velocity.
@@ -36,7 +36,7 @@ const POSITION_ROUNDING: f64 = 1e-14;
 /// The last three commands, and the judgement over the next one: by differences, as a drive sees it.
 #[derive(Debug, Clone, Copy)]
 pub struct Envelope<const N: usize> {
-    limits: JointLimits<N>,
+    limits: MotionLimits<N>,
     workspace: WorkspaceBox,
     period: f64,
     /// The last three positions, latest first.
@@ -46,7 +46,12 @@ pub struct Envelope<const N: usize> {
 impl<const N: usize> Envelope<N> {
     /// An envelope around an arm that stands still at `position`, commanded once per `period` (seconds).
     #[must_use]
-    pub fn at_rest(position: [f64; N], limits: JointLimits<N>, workspace: WorkspaceBox, period: f64) -> Self {
+    pub fn at_rest(
+        position: [f64; N],
+        limits: MotionLimits<N>,
+        workspace: WorkspaceBox,
+        period: f64,
+    ) -> Self {
         Self { limits, workspace, period, history: [position; 3] }
     }
 
@@ -117,8 +122,8 @@ impl<const N: usize> Envelope<N> {
 mod tests {
     use super::*;
 
-    const LIMITS: JointLimits<1> =
-        JointLimits { position: [(-1.0, 1.0)], velocity: [2.0], acceleration: [10.0], jerk: [500.0] };
+    const LIMITS: MotionLimits<1> =
+        MotionLimits { position: [(-1.0, 1.0)], velocity: [2.0], acceleration: [10.0], jerk: [500.0] };
     const BOX: WorkspaceBox =
         WorkspaceBox { low: Vector3::new(-2.0, -2.0, -2.0), high: Vector3::new(2.0, 2.0, 2.0) };
 

@@ -3,5 +3,5 @@
 mod envelope;
 mod fault;
 
-pub use envelope::{Envelope, JointLimits, WorkspaceBox};
+pub use envelope::{Envelope, MotionLimits, WorkspaceBox};
 pub use fault::{Fault, StopCategory};
