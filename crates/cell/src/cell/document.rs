@@ -149,14 +149,19 @@ impl Document {
                     self.overlay(&mut table, over, &path)?;
                     Value::Table(table)
                 }
-                Value::Array(over) if is_array_of_tables(&over) => {
-                    let mut nodes = match base.remove(&key) {
-                        Some(Entry { node: Node { value: Value::Array(nodes), .. }, .. }) => nodes,
-                        _ => Vec::new(),
-                    };
-                    self.overlay_numbered(&mut nodes, over, &path)?;
-                    Value::Array(nodes)
-                }
+                Value::Array(over) if is_array_of_tables(&over) => match base.remove(&key) {
+                    // A single table written in double brackets: the reader says so.
+                    Some(Entry { node: Node { value: Value::Table(_), .. }, .. }) => Value::Array(over),
+                    Some(Entry { node: Node { value: Value::Array(mut nodes), .. }, .. }) => {
+                        self.overlay_numbered(&mut nodes, over, &path)?;
+                        Value::Array(nodes)
+                    }
+                    _ => {
+                        let mut nodes = Vec::new();
+                        self.overlay_numbered(&mut nodes, over, &path)?;
+                        Value::Array(nodes)
+                    }
+                },
                 other => other,
             };
             base.insert(key, Entry { key: key_span, node: Node { span, value } });
@@ -164,13 +169,25 @@ impl Document {
         Ok(())
     }
 
+    fn number(&self, node: &Node, path: &str) -> Result<i64, CellError> {
+        let expected = "a whole number in each of these tables".to_owned();
+        let written = match &node.value {
+            Value::Table(table) => table.get("number").map(|entry| entry.node.span),
+            _ => None,
+        };
+        number_of(node).ok_or_else(|| {
+            let problem = match written {
+                Some(span) => Problem::Value { found: self.quote(span), expected },
+                None => Problem::Missing { expected },
+            };
+            self.error(written.unwrap_or(node.span), &format!("{path}.number"), problem)
+        })
+    }
+
     fn overlay_numbered(&self, base: &mut Vec<Node>, over: Vec<Node>, path: &str) -> Result<(), CellError> {
         let mut seen: BTreeMap<i64, Span> = BTreeMap::new();
         for node in over {
-            let Some(number) = number(&node) else {
-                let problem = Problem::Missing { expected: "a whole number for each of these tables".into() };
-                return Err(self.error(node.span, &format!("{path}.number"), problem));
-            };
+            let number = self.number(&node, path)?;
             let path = format!("{path}[{number}]");
             if let Some(first) = seen.insert(number, node.span) {
                 let first_line = self.line(first);
@@ -178,7 +195,7 @@ impl Document {
             }
             let Node { span, value: Value::Table(over) } = node else { continue };
             let mut table = Table::new();
-            let same = base.iter().position(|other| self::number(other) == Some(number));
+            let same = base.iter().position(|other| number_of(other) == Some(number));
             if let Some(Value::Table(default)) = same.map(|index| base.swap_remove(index).value) {
                 table = default;
             }
@@ -207,7 +224,7 @@ pub(super) fn is_array_of_tables(nodes: &[Node]) -> bool {
 }
 
 /// The `number` of a table, if it has one.
-pub(super) fn number(node: &Node) -> Option<i64> {
+pub(super) fn number_of(node: &Node) -> Option<i64> {
     let Value::Table(table) = &node.value else { return None };
     match table.get("number")?.node.value {
         Value::Integer(number) => Some(number),

@@ -135,6 +135,18 @@ impl Io {
         self.inputs.iter().find(|input| input.number == number)
     }
 
+    /// The value of IN#(number) at a time in seconds from the start of the job; none where the cell refuses inputs
+    /// without a script.
+    #[must_use]
+    pub fn at(&self, number: u32, time: f64) -> Option<bool> {
+        match (self.input(number), self.unscripted) {
+            (Some(input), _) => Some(input.at(time)),
+            (None, UnscriptedInput::Off) => Some(false),
+            (None, UnscriptedInput::On) => Some(true),
+            (None, UnscriptedInput::Refuse) => None,
+        }
+    }
+
     pub(super) fn read(mut section: Section<'_>) -> Result<Self, CellError> {
         let unscripted =
             [("off", UnscriptedInput::Off), ("on", UnscriptedInput::On), ("refuse", UnscriptedInput::Refuse)];

@@ -116,17 +116,21 @@ impl<'a> Section<'a> {
         self.document.error(span, &self.key(key), value_problem(self.document, span, expected))
     }
 
-    /// Checks that one number of the table is less than another; the error points at the one the file itself gives.
+    /// The error for values that contradict each other; it points at the first of them that the file itself gives.
+    pub(super) fn contradiction(&self, keys: &[&str], expected: &str) -> CellError {
+        let own = |key: &&&str| self.table.get(**key).is_some_and(|entry| entry.key.origin == Origin::User);
+        let key = keys.iter().find(own).or(keys.first()).copied().unwrap_or_default();
+        self.unexpected(key, expected)
+    }
+
+    /// Checks that one number of the table is less than another.
     pub(super) fn ordered(&self, low: (&str, f64), high: (&str, f64)) -> Result<(), CellError> {
         if low.1 < high.1 {
             return Ok(());
         }
-        let own = |key: &str| self.table.get(key).is_some_and(|entry| entry.key.origin == Origin::User);
-        Err(if own(low.0) || !own(high.0) {
-            self.unexpected(low.0, &format!("less than {} ({})", high.0, self.written(high.0)))
-        } else {
-            self.unexpected(high.0, &format!("more than {} ({})", low.0, self.written(low.0)))
-        })
+        let (low, high) = (low.0, high.0);
+        let expected = format!("{low} ({}) less than {high} ({})", self.written(low), self.written(high));
+        Err(self.contradiction(&[low, high], &expected))
     }
 
     /// The value of a key as it is written.
@@ -247,8 +251,8 @@ impl<'a> Section<'a> {
     ) -> Result<T, CellError> {
         let names: Vec<String> = choices.iter().map(|(name, _)| format!("\"{name}\"")).collect();
         let expected = match names.as_slice() {
-            [one] => one.clone(),
-            _ => names.join(" or "),
+            [others @ .., last] if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+            _ => names.concat(),
         };
         let node = self.require(key, &expected)?;
         let chosen = choices
@@ -269,7 +273,7 @@ impl<'a> Section<'a> {
             (true, false) => Ok(first),
             (false, true) => Ok(second),
             (true, true) => Err(self.unexpected(second, &format!("either {first} or {second}, not both"))),
-            (false, false) => Err(self.missing(first, &format!("a number, or {second}"))),
+            (false, false) => Err(self.missing(first, &format!("this or {second}"))),
         }
     }
 
@@ -291,7 +295,7 @@ impl<'a> Section<'a> {
         let Value::Array(nodes) = &node.value else { return Err(self.unexpected(key, &expected)) };
         let mut tables = Vec::with_capacity(nodes.len());
         for node in nodes {
-            let number = super::document::number(node).ok_or_else(|| self.unexpected(key, &expected))?;
+            let number = super::document::number_of(node).ok_or_else(|| self.unexpected(key, &expected))?;
             let path = format!("{}[{number}]", self.key(key));
             let mut table = Section::of(self.document, path, node)?;
             tables.push((table.integer("number", range.clone())?, table));
