@@ -88,6 +88,8 @@ pub struct Simulation {
     pub seed: u32,
     /// Time constant in seconds of each joint's servo loop; 0 follows exactly.
     pub servo_lag: Vec<f64>,
+    /// Part of the commanded speed that the servo loops get as feed-forward, 0–1.
+    pub velocity_feed_forward: f64,
     /// Step of the simulated encoders in the pulses of [`Joint`](super::Joint); 0 measures exactly.
     pub encoder_step_pulses: f64,
     /// The simulated laser's errors.
@@ -112,6 +114,11 @@ impl Simulation {
         let simulation = Self {
             seed: section.integer("seed", 0..=u32::MAX)?,
             servo_lag: section.per_joint("servo_lag_ms", Unit::Milli, 0.0..=1000.0, joints)?,
+            velocity_feed_forward: section.number(
+                "velocity_feed_forward_percent",
+                Unit::Percent,
+                0.0..=100.0,
+            )?,
             encoder_step_pulses: section.number("encoder_step_pulses", Unit::Plain, 0.0..=1e6)?,
             laser: LaserErrors {
                 noise: section.number("laser_noise_mm", Unit::Milli, 0.0..=10.0)?,
