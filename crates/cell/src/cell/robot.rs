@@ -296,7 +296,7 @@ fn read_joints(section: &mut Section<'_>, model: &RobotModel) -> Result<Vec<Join
             "{} tables [[robot.joint]] (those of the default cell belong to its own robot)",
             if matches!(model, RobotModel::Urdf(_)) { "1 to 7".to_owned() } else { count.to_string() }
         );
-        return Err(section.absent("joint", &expected));
+        return Err(section.missing("joint", &expected));
     }
     if joints.len() != count {
         let expected = format!("{count} tables [[robot.joint]] for this model, not {}", joints.len());

@@ -291,7 +291,17 @@ fn the_examples_in_the_comments_are_right() {
 }
 
 #[test]
-fn a_file_that_cannot_be_read_says_so() {
+fn files_are_loaded_or_refused_with_their_place() {
     let error = Cell::load(Path::new("no/such/cell.toml")).unwrap_err().to_string();
     assert!(error.starts_with("no/such/cell.toml: cannot be read: "), "{error}");
+
+    let path = std::env::temp_dir().join(format!("seamline-cell-{}.toml", std::process::id()));
+    std::fs::write(&path, "\u{FEFF}[cycle]\r\nperiod_ms = 2\r\n").unwrap();
+    let good = Cell::load(&path);
+    std::fs::write(&path, b"[cycle]\n# gr\xF6\xDFer\nperiod_ms = 2\n").unwrap();
+    let latin = Cell::load(&path);
+    std::fs::remove_file(&path).unwrap();
+    assert_eq!(good.map(|cell| cell.cycle.period), Ok(0.002));
+    let expected = format!("{}:2:5: not TOML: a byte that is not UTF-8", path.display());
+    assert_eq!(latin.map_err(|error| error.to_string()), Err(expected));
 }
