@@ -11,3 +11,4 @@ pub mod cell;
 pub mod job;
 pub mod plan;
 pub mod record;
+pub mod sim;

@@ -50,15 +50,37 @@ pub(super) struct Entry {
 }
 
 /// Keys of which a table has only one: a file's own choice replaces the default's.
-pub(super) const ALTERNATIVES: [(&str, &str); 2] =
-    [("voltage_v", "voltage_percent"), ("frequency_hz", "wavelength_mm")];
+const ALTERNATIVES: [(&str, &str); 2] = [("voltage_v", "voltage_percent"), ("frequency_hz", "wavelength_mm")];
 
-/// A cell file laid over the default, with the texts that errors quote.
+/// A cell file laid over the default.
 #[derive(Debug)]
 pub(super) struct Document {
+    pub(super) sources: Sources,
+    pub(super) root: Node,
+}
+
+impl Document {
+    /// The user's text laid over the default's: tables key by key, arrays of tables by their `number`, anything
+    /// else replaced whole.
+    pub(super) fn parse(name: &str, text: &str, default: &str) -> Result<Self, CellError> {
+        let sources = Sources {
+            user: Source { name: name.to_owned(), text: text.to_owned() },
+            default: Source { name: "default cell".to_owned(), text: default.to_owned() },
+        };
+        let mut root = sources.tree(Origin::Default)?;
+        let over = sources.tree(Origin::User)?;
+        forget_other_robot(&mut root, &over);
+        sources.overlay(&mut root, over, "")?;
+        let span = Span { origin: Origin::User, start: 0, end: 0 };
+        Ok(Self { sources, root: Node { span, value: Value::Table(root) } })
+    }
+}
+
+/// The texts that errors point into.
+#[derive(Debug)]
+pub(super) struct Sources {
     user: Source,
     default: Source,
-    pub(super) root: Node,
 }
 
 #[derive(Debug)]
@@ -67,27 +89,7 @@ struct Source {
     text: String,
 }
 
-impl Document {
-    /// The user's text laid over the default's: tables key by key, arrays of tables by their `number`, anything
-    /// else replaced whole.
-    pub(super) fn parse(name: &str, text: &str, default: &str) -> Result<Self, CellError> {
-        let mut document = Self {
-            user: Source { name: name.to_owned(), text: text.to_owned() },
-            default: Source { name: "default cell".to_owned(), text: default.to_owned() },
-            root: Node {
-                span: Span { origin: Origin::User, start: 0, end: 0 },
-                value: Value::Boolean(false),
-            },
-        };
-        let mut root = document.tree(Origin::Default)?;
-        let over = document.tree(Origin::User)?;
-        forget_other_robot(&mut root, &over);
-        document.overlay(&mut root, over, "")?;
-        document.root =
-            Node { span: Span { origin: Origin::User, start: 0, end: 0 }, value: Value::Table(root) };
-        Ok(document)
-    }
-
+impl Sources {
     fn source(&self, origin: Origin) -> &Source {
         match origin {
             Origin::Default => &self.default,
@@ -139,51 +141,57 @@ impl Document {
         }
         for (key, entry) in over {
             let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-            let Entry { key: key_span, node: Node { span, value } } = entry;
-            let value = match value {
-                Value::Table(over) => {
-                    let mut table = match base.remove(&key) {
-                        Some(Entry { node: Node { value: Value::Table(table), .. }, .. }) => table,
-                        _ => Table::new(),
-                    };
+            let below = base.remove(&key).map(|entry| entry.node.value);
+            let Node { span, value } = entry.node;
+            let value = match (below, value) {
+                (below, Value::Table(over)) => {
+                    let mut table = table_in(below);
                     self.overlay(&mut table, over, &path)?;
                     Value::Table(table)
                 }
-                Value::Array(over) if is_array_of_tables(&over) => {
-                    let mut nodes = match base.remove(&key) {
-                        Some(Entry { node: Node { value: Value::Array(nodes), .. }, .. }) => nodes,
-                        _ => Vec::new(),
-                    };
+                // A single table headed by double brackets: the reader says so.
+                (Some(Value::Table(_)), over) => over,
+                (below, Value::Array(over)) if is_array_of_tables(&over) => {
+                    let mut nodes = if let Some(Value::Array(nodes)) = below { nodes } else { Vec::new() };
                     self.overlay_numbered(&mut nodes, over, &path)?;
                     Value::Array(nodes)
                 }
-                other => other,
+                (_, over) => over,
             };
-            base.insert(key, Entry { key: key_span, node: Node { span, value } });
+            base.insert(key, Entry { key: entry.key, node: Node { span, value } });
         }
         Ok(())
+    }
+
+    /// The number that tells a table of an array from its neighbours.
+    fn number(&self, node: &Node, path: &str) -> Result<i64, CellError> {
+        let expected = "a whole number in each of these tables".to_owned();
+        let written = match &node.value {
+            Value::Table(table) => table.get("number").map(|entry| entry.node.span),
+            _ => None,
+        };
+        number_of(node).ok_or_else(|| {
+            let problem = match written {
+                Some(span) => Problem::Value { found: self.quote(span), expected },
+                None => Problem::Missing { expected },
+            };
+            self.error(written.unwrap_or(node.span), &format!("{path}.number"), problem)
+        })
     }
 
     fn overlay_numbered(&self, base: &mut Vec<Node>, over: Vec<Node>, path: &str) -> Result<(), CellError> {
         let mut seen: BTreeMap<i64, Span> = BTreeMap::new();
         for node in over {
-            let Some(number) = number(&node) else {
-                let problem = Problem::Missing { expected: "a whole number for each of these tables".into() };
-                return Err(self.error(node.span, &format!("{path}.number"), problem));
-            };
+            let number = self.number(&node, path)?;
             let path = format!("{path}[{number}]");
             if let Some(first) = seen.insert(number, node.span) {
                 let first_line = self.line(first);
                 return Err(self.error(node.span, &path, Problem::DuplicateNumber { first_line }));
             }
-            let Node { span, value: Value::Table(over) } = node else { continue };
-            let mut table = Table::new();
-            let same = base.iter().position(|other| self::number(other) == Some(number));
-            if let Some(Value::Table(default)) = same.map(|index| base.swap_remove(index).value) {
-                table = default;
-            }
-            self.overlay(&mut table, over, &path)?;
-            base.push(Node { span, value: Value::Table(table) });
+            let same = base.iter().position(|other| number_of(other) == Some(number));
+            let mut table = table_in(same.map(|index| base.swap_remove(index).value));
+            self.overlay(&mut table, table_in(Some(node.value)), &path)?;
+            base.push(Node { span: node.span, value: Value::Table(table) });
         }
         Ok(())
     }
@@ -202,12 +210,17 @@ fn forget_other_robot(default: &mut Table, user: &Table) {
     }
 }
 
-pub(super) fn is_array_of_tables(nodes: &[Node]) -> bool {
+/// The table that a value is; an empty one if it is none.
+fn table_in(value: Option<Value>) -> Table {
+    if let Some(Value::Table(table)) = value { table } else { Table::new() }
+}
+
+fn is_array_of_tables(nodes: &[Node]) -> bool {
     !nodes.is_empty() && nodes.iter().all(|node| matches!(node.value, Value::Table(_)))
 }
 
 /// The `number` of a table, if it has one.
-pub(super) fn number(node: &Node) -> Option<i64> {
+pub(super) fn number_of(node: &Node) -> Option<i64> {
     let Value::Table(table) = &node.value else { return None };
     match table.get("number")?.node.value {
         Value::Integer(number) => Some(number),
@@ -246,7 +259,7 @@ fn span(range: std::ops::Range<usize>, origin: Origin) -> Span {
 }
 
 /// Line and column of a byte offset, from 1; columns count characters.
-fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
+pub(super) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     let before = text.get(..offset).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
     (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)

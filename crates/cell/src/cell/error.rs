@@ -77,7 +77,7 @@ impl fmt::Display for Problem {
             Self::Unreadable(reason) => write!(f, "cannot be read: {reason}"),
             Self::Syntax(reason) => write!(f, "not TOML: {reason}"),
             Self::UnknownKey { known: Suggestion::Nearest(key) } => {
-                write!(f, "unknown key, expected {key}?")
+                write!(f, "unknown key, did you mean {key}?")
             }
             Self::UnknownKey { known: Suggestion::All(keys) } => {
                 write!(f, "unknown key, expected one of {}", keys.join(", "))

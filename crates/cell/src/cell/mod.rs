@@ -11,12 +11,14 @@
 mod document;
 mod error;
 mod frames;
+mod io;
 mod job_rules;
 mod motion;
 mod nearest;
 mod robot;
 mod section;
 mod sensor;
+mod simulation;
 #[cfg(test)]
 mod tests;
 mod welding;
@@ -25,13 +27,15 @@ use std::path::Path;
 
 pub use error::{CellError, Problem, Suggestion};
 pub use frames::{Tool, UserFrame};
-pub use job_rules::{Io, JobRules, ScriptedInput, SpeedUnit, UnmetWait, UnscriptedInput, WeldSpeedRule};
+pub use io::{Io, ScriptedInput, UnmetWait, UnscriptedInput};
+pub use job_rules::{JobRules, SpeedUnit, WeldSpeedRule};
 pub use motion::{CartesianLimits, Cycle, DriveBackend, FlexibleMode, Safety};
 pub use robot::{
     BuiltInRobot, DhConvention, DhRow, DhTable, JOINTS_MAX, Joint, JointKind, OpwParameters, Robot,
     RobotModel, UrdfSource,
 };
-pub use sensor::{LaserErrors, LostSeam, SeamFilter, Sensor, Simulation};
+pub use sensor::{LostSeam, SeamFilter, Sensor};
+pub use simulation::{LaserErrors, Simulation};
 pub use welding::{ArcEnd, ArcPolicy, ArcStart, Voltage, Weave, WeavePattern, WeaveRate, WeaveSide};
 
 use document::Document;
@@ -92,11 +96,13 @@ impl Cell {
     /// The first mistake, with its place.
     pub fn load(path: &Path) -> Result<Self, CellError> {
         let name = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| CellError {
-            file: name.clone(),
-            place: None,
-            key: String::new(),
-            problem: Problem::Unreadable(error.to_string()),
+        let error = |place, problem| CellError { file: name.clone(), place, key: String::new(), problem };
+        let bytes =
+            std::fs::read(path).map_err(|reason| error(None, Problem::Unreadable(reason.to_string())))?;
+        let text = String::from_utf8(bytes).map_err(|reason| {
+            let right = String::from_utf8_lossy(&reason.as_bytes()[..reason.utf8_error().valid_up_to()]);
+            let place = document::line_and_column(&right, right.len());
+            error(Some(place), Problem::Syntax("a byte that is not UTF-8".to_owned()))
         })?;
         Self::parse(&text, &name)
     }

@@ -28,20 +28,20 @@ pub struct CartesianLimits {
 
 impl CartesianLimits {
     pub(super) fn read(mut section: Section<'_>) -> Result<Self, CellError> {
-        let mut length = |key| section.number(key, Unit::Milli, 0.001..=1e9);
-        let (speed, acceleration) = (length("speed_mm_s")?, length("acceleration_mm_s2")?);
-        let jerk = length("jerk_mm_s3")?;
-        let (weave_jerk, correction_jerk) = (length("weave_jerk_mm_s3")?, length("correction_jerk_mm_s3")?);
-        let mut angle = |key| section.number(key, Unit::Degree, 0.001..=1e9);
+        let (speed, acceleration, jerk) = (0.001..=1e5, 0.001..=1e6, 0.001..=1e9);
         let limits = Self {
-            speed,
-            acceleration,
-            jerk,
-            rotation_speed: angle("rotation_speed_deg_s")?,
-            rotation_acceleration: angle("rotation_acceleration_deg_s2")?,
-            rotation_jerk: angle("rotation_jerk_deg_s3")?,
-            weave_jerk,
-            correction_jerk,
+            speed: section.number("speed_mm_s", Unit::Milli, speed.clone())?,
+            acceleration: section.number("acceleration_mm_s2", Unit::Milli, acceleration.clone())?,
+            jerk: section.number("jerk_mm_s3", Unit::Milli, jerk.clone())?,
+            rotation_speed: section.number("rotation_speed_deg_s", Unit::Degree, speed)?,
+            rotation_acceleration: section.number(
+                "rotation_acceleration_deg_s2",
+                Unit::Degree,
+                acceleration,
+            )?,
+            rotation_jerk: section.number("rotation_jerk_deg_s3", Unit::Degree, jerk.clone())?,
+            weave_jerk: section.number("weave_jerk_mm_s3", Unit::Milli, jerk.clone())?,
+            correction_jerk: section.number("correction_jerk_mm_s3", Unit::Milli, jerk)?,
         };
         section.finish()?;
         Ok(limits)

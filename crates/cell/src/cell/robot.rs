@@ -74,7 +74,7 @@ pub struct OpwParameters {
     pub c3: f64,
     /// Wrist centre to flange.
     pub c4: f64,
-    /// Angle of each joint in the paper's zero pose when the joint itself reads zero: θ = sign·q + offset.
+    /// Offset of each joint: the paper's angle is θ = sign·q − offset (as in ROS), with θ = 0 the arm stretched upwards.
     pub offsets: [f64; 6],
     /// Turning sense of each joint against the paper's, +1 or −1.
     pub signs: [f64; 6],
@@ -186,13 +186,17 @@ impl Robot {
     }
 
     pub(super) fn read(section: &mut Section<'_>, folder: &Path) -> Result<Self, CellError> {
-        let kind = section.choice("model", &MODELS)?;
-        let model = match kind {
-            ModelKind::BuiltIn(robot) => RobotModel::BuiltIn(robot),
-            ModelKind::Opw => RobotModel::Opw(read_opw(section.section("opw")?)?),
-            ModelKind::Dh => RobotModel::Dh(read_dh(section.section("dh")?)?),
-            ModelKind::Urdf => RobotModel::Urdf(read_urdf(section.section("urdf")?, folder)?),
+        let (model, own_table) = match section.choice("model", &MODELS)? {
+            ModelKind::BuiltIn(robot) => (RobotModel::BuiltIn(robot), ""),
+            ModelKind::Opw => (RobotModel::Opw(read_opw(section.section("opw")?)?), "opw"),
+            ModelKind::Dh => (RobotModel::Dh(read_dh(section.section("dh")?)?), "dh"),
+            ModelKind::Urdf => (RobotModel::Urdf(read_urdf(section.section("urdf")?, folder)?), "urdf"),
         };
+        for table in ["opw", "dh", "urdf"] {
+            if table != own_table && section.has(table) {
+                return Err(section.unexpected(table, &format!("model = \"{table}\" with this table")));
+            }
+        }
         let name = match section.optional_text("name")? {
             Some(name) => name,
             None => section.text("model")?,
@@ -292,7 +296,7 @@ fn read_joints(section: &mut Section<'_>, model: &RobotModel) -> Result<Vec<Join
             "{} tables [[robot.joint]] (those of the default cell belong to its own robot)",
             if matches!(model, RobotModel::Urdf(_)) { "1 to 7".to_owned() } else { count.to_string() }
         );
-        return Err(section.absent("joint", &expected));
+        return Err(section.missing("joint", &expected));
     }
     if joints.len() != count {
         let expected = format!("{count} tables [[robot.joint]] for this model, not {}", joints.len());
@@ -361,12 +365,14 @@ fn read_joint(mut table: Section<'_>) -> Result<Joint, CellError> {
     table.ordered((keys.position_min, position_min), (keys.position_max, position_max))?;
     let soft_margin = table.number(keys.soft_margin, keys.length, 0.0..=keys.range)?;
     if 2.0 * soft_margin >= position_max - position_min {
-        return Err(table.unexpected(keys.soft_margin, "less than half the way between the position limits"));
+        let expected =
+            format!("{} ({}) less than half the range", keys.soft_margin, table.written(keys.soft_margin));
+        let keys = [keys.soft_margin, keys.position_min, keys.position_max];
+        return Err(table.contradiction(&keys, &expected));
     }
-    let mut limit = |key| table.number(key, keys.length, 0.001..=1e9);
-    let velocity = limit(keys.velocity)?;
-    let acceleration = limit(keys.acceleration)?;
-    let jerk = limit(keys.jerk)?;
+    let velocity = table.number(keys.velocity, keys.length, 0.001..=1e5)?;
+    let acceleration = table.number(keys.acceleration, keys.length, 0.001..=1e6)?;
+    let jerk = table.number(keys.jerk, keys.length, 0.001..=1e8)?;
     let pulses = table.number(keys.pulses, keys.per_length, 1e-3..=1e9)?;
     let sign = table.choice("pulse_direction", &[("positive", 1.0), ("negative", -1.0)])?;
     let following_error = table.number(keys.following_error, keys.length, 1e-3..=keys.range)?;
@@ -386,7 +392,9 @@ fn read_joint(mut table: Section<'_>) -> Result<Joint, CellError> {
     };
     let (low, high) = joint.soft_limits();
     if !(low..=high).contains(&home) {
-        return Err(table.unexpected(keys.home, "a position within the soft limits"));
+        let expected = format!("{} ({}) within the soft limits", keys.home, table.written(keys.home));
+        let keys = [keys.home, keys.position_min, keys.position_max, keys.soft_margin];
+        return Err(table.contradiction(&keys, &expected));
     }
     table.finish()?;
     Ok(joint)

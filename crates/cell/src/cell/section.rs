@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::document::{ALTERNATIVES, Document, Entry, Node, Origin, Span, Table, Value};
+use super::document::{Document, Entry, Node, Origin, Sources, Span, Table, Value};
 use super::error::{CellError, Problem, Suggestion};
 use super::nearest::nearest;
 
@@ -39,7 +39,7 @@ impl Unit {
 /// One table of the file while it is read. [`finish`](Self::finish) refuses the keys nobody asked for.
 #[derive(Debug)]
 pub(super) struct Section<'a> {
-    document: &'a Document,
+    sources: &'a Sources,
     path: String,
     span: Span,
     table: &'a Table,
@@ -49,13 +49,13 @@ pub(super) struct Section<'a> {
 impl<'a> Section<'a> {
     /// The whole file.
     pub(super) fn root(document: &'a Document) -> Result<Self, CellError> {
-        Self::of(document, String::new(), &document.root)
+        Self::of(&document.sources, String::new(), &document.root)
     }
 
-    fn of(document: &'a Document, path: String, node: &'a Node) -> Result<Self, CellError> {
+    fn of(sources: &'a Sources, path: String, node: &'a Node) -> Result<Self, CellError> {
         match &node.value {
-            Value::Table(table) => Ok(Self { document, path, span: node.span, table, asked: Vec::new() }),
-            _ => Err(document.error(node.span, &path, value_problem(document, node.span, "a table"))),
+            Value::Table(table) => Ok(Self { sources, path, span: node.span, table, asked: Vec::new() }),
+            _ => Err(sources.error(node.span, &path, value_problem(sources, node.span, "a table"))),
         }
     }
 
@@ -79,17 +79,18 @@ impl<'a> Section<'a> {
         self.ask(key).ok_or_else(|| self.missing(key, expected))
     }
 
-    /// A misspelt key is the likelier mistake: it is named before the one that is missing for it.
-    fn missing(&self, key: &'static str, expected: &str) -> CellError {
+    /// The error for a key that is not there. A misspelt key is the likelier mistake: it is named before the one that
+    /// is missing for it.
+    pub(super) fn missing(&self, key: &'static str, expected: &str) -> CellError {
         let unasked = self.unasked().map(|(name, _)| name.as_str());
         match nearest(key, unasked).and_then(|name| self.table.get_key_value(name)) {
             Some((name, entry)) => {
                 let known = Suggestion::Nearest(key.to_owned());
-                self.document.error(entry.key, &self.key(name), Problem::UnknownKey { known })
+                self.sources.error(entry.key, &self.key(name), Problem::UnknownKey { known })
             }
             None => {
                 let problem = Problem::Missing { expected: expected.to_owned() };
-                self.document.error(self.span, &self.key(key), problem)
+                self.sources.error(self.span, &self.key(key), problem)
             }
         }
     }
@@ -107,31 +108,35 @@ impl<'a> Section<'a> {
             Some(key) => Suggestion::Nearest(key.to_owned()),
             None => Suggestion::All(self.asked.iter().map(|&key| key.to_owned()).collect()),
         };
-        Err(self.document.error(entry.key, &self.key(name), Problem::UnknownKey { known }))
+        Err(self.sources.error(entry.key, &self.key(name), Problem::UnknownKey { known }))
     }
 
     /// The error for a value that is there but not as expected.
     pub(super) fn unexpected(&self, key: &str, expected: &str) -> CellError {
         let span = self.table.get(key).map_or(self.span, |entry| entry.node.span);
-        self.document.error(span, &self.key(key), value_problem(self.document, span, expected))
+        self.sources.error(span, &self.key(key), value_problem(self.sources, span, expected))
     }
 
-    /// Checks that one number of the table is less than another; the error points at the one the file itself gives.
+    /// The error for values that contradict each other; it points at the first of them that the file itself gives.
+    pub(super) fn contradiction(&self, keys: &[&str], expected: &str) -> CellError {
+        let own = |key: &&&str| self.table.get(**key).is_some_and(|entry| entry.key.origin == Origin::User);
+        let key = keys.iter().find(own).or(keys.first()).copied().unwrap_or_default();
+        self.unexpected(key, expected)
+    }
+
+    /// Checks that one number of the table is less than another.
     pub(super) fn ordered(&self, low: (&str, f64), high: (&str, f64)) -> Result<(), CellError> {
         if low.1 < high.1 {
             return Ok(());
         }
-        let own = |key: &str| self.table.get(key).is_some_and(|entry| entry.key.origin == Origin::User);
-        Err(if own(low.0) || !own(high.0) {
-            self.unexpected(low.0, &format!("less than {} ({})", high.0, self.written(high.0)))
-        } else {
-            self.unexpected(high.0, &format!("more than {} ({})", low.0, self.written(low.0)))
-        })
+        let (low, high) = (low.0, high.0);
+        let expected = format!("{low} ({}) less than {high} ({})", self.written(low), self.written(high));
+        Err(self.contradiction(&[low, high], &expected))
     }
 
     /// The value of a key as it is written.
     pub(super) fn written(&self, key: &str) -> String {
-        self.table.get(key).map_or_else(String::new, |entry| self.document.quote(entry.node.span))
+        self.table.get(key).map_or_else(String::new, |entry| self.sources.quote(entry.node.span))
     }
 
     /// A number in its edge unit within a range (also in the edge unit), converted to SI.
@@ -169,7 +174,7 @@ impl<'a> Section<'a> {
                 number_in(item, &range).map(|value| unit.to_si(value)).ok_or_else(|| {
                     let expected = format!("a number from {} to {}", range.start(), range.end());
                     let path = format!("{}[{}]", self.key(key), index + 1);
-                    self.document.error(item.span, &path, value_problem(self.document, item.span, &expected))
+                    self.sources.error(item.span, &path, value_problem(self.sources, item.span, &expected))
                 })
             })
             .collect()
@@ -247,8 +252,8 @@ impl<'a> Section<'a> {
     ) -> Result<T, CellError> {
         let names: Vec<String> = choices.iter().map(|(name, _)| format!("\"{name}\"")).collect();
         let expected = match names.as_slice() {
-            [one] => one.clone(),
-            _ => names.join(" or "),
+            [others @ .., last] if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+            _ => names.concat(),
         };
         let node = self.require(key, &expected)?;
         let chosen = choices
@@ -264,12 +269,11 @@ impl<'a> Section<'a> {
         first: &'static str,
         second: &'static str,
     ) -> Result<&'static str, CellError> {
-        debug_assert!(ALTERNATIVES.contains(&(first, second)), "the overlay must know the pair");
         match (self.has(first), self.has(second)) {
             (true, false) => Ok(first),
             (false, true) => Ok(second),
             (true, true) => Err(self.unexpected(second, &format!("either {first} or {second}, not both"))),
-            (false, false) => Err(self.missing(first, &format!("a number, or {second}"))),
+            (false, false) => Err(self.missing(first, &format!("this or {second}"))),
         }
     }
 
@@ -277,7 +281,7 @@ impl<'a> Section<'a> {
     pub(super) fn section(&mut self, key: &'static str) -> Result<Section<'a>, CellError> {
         let path = self.key(key);
         let node = self.require(key, "a table")?;
-        Section::of(self.document, path, node)
+        Section::of(self.sources, path, node)
     }
 
     /// The tables of an array, by ascending `number`; none where the key is absent.
@@ -291,23 +295,18 @@ impl<'a> Section<'a> {
         let Value::Array(nodes) = &node.value else { return Err(self.unexpected(key, &expected)) };
         let mut tables = Vec::with_capacity(nodes.len());
         for node in nodes {
-            let number = super::document::number(node).ok_or_else(|| self.unexpected(key, &expected))?;
+            let number = super::document::number_of(node).ok_or_else(|| self.unexpected(key, &expected))?;
             let path = format!("{}[{number}]", self.key(key));
-            let mut table = Section::of(self.document, path, node)?;
+            let mut table = Section::of(self.sources, path, node)?;
             tables.push((table.integer("number", range.clone())?, table));
         }
         tables.sort_by_key(|(number, _)| *number);
         Ok(tables)
     }
-
-    /// The error for the table as a whole.
-    pub(super) fn absent(&self, key: &'static str, expected: &str) -> CellError {
-        self.missing(key, expected)
-    }
 }
 
-fn value_problem(document: &Document, span: Span, expected: &str) -> Problem {
-    Problem::Value { found: document.quote(span), expected: expected.to_owned() }
+fn value_problem(sources: &Sources, span: Span, expected: &str) -> Problem {
+    Problem::Value { found: sources.quote(span), expected: expected.to_owned() }
 }
 
 fn number_in(node: &Node, range: &RangeInclusive<f64>) -> Option<f64> {
