@@ -126,6 +126,18 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
         Ok(load)
     }
 
+    /// The loads of a piece's two halves.
+    pub(super) fn halves(&mut self, piece: &TimingPiece) -> Result<[Load<N>; 2], TimingError<P::Error>> {
+        let start = self.sample(piece, 0.0)?;
+        let middle = self.sample(piece, piece.duration / 2.0)?;
+        let end = self.sample(piece, piece.duration)?;
+        let mut ignore = |_: f64, _: f64, _: &Load<N>| {};
+        Ok([
+            self.interval(piece, &start, &middle, &mut ignore)?,
+            self.interval(piece, &middle, &end, &mut ignore)?,
+        ])
+    }
+
     fn sample(&mut self, piece: &TimingPiece, time: f64) -> Result<Sample<N>, TimingError<P::Error>> {
         let state = piece.at(time);
         let place = state.position.clamp(0.0, self.length);
