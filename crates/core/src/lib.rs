@@ -5,6 +5,7 @@
 //! |---|---|
 //! | [`math`] | elementary functions with or without std |
 //! | [`geometry`] | poses, Euler angles, poses with their derivatives along a path |
+//! | [`kinematics`] | arm models: forward, inverse, Jacobian, joint derivatives along a path, singularities |
 //! | [`path`] | lines and arcs with orientation, as functions of the path coordinate |
 //!
 //! # Units and frames
@@ -22,5 +23,6 @@
 extern crate std;
 
 pub mod geometry;
+pub mod kinematics;
 pub mod math;
 pub mod path;

@@ -1,3 +1,4 @@
 //! Elementary functions and small numeric tools.
 
 pub mod float;
+pub mod taylor;

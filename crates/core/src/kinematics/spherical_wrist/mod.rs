@@ -1,0 +1,225 @@
+//! Six-axis arms with parallel shoulder and elbow axes and three wrist axes that meet in one point.
+//!
+//! Dimensions and angles θ are those of Brandstötter, Angerer, Hofbaur, *An Analytical Solution of the Inverse
+//! Kinematics Problem of Industrial Serial Manipulators with an Ortho-parallel Basis and a Spherical Wrist*, 2014
+//! (fig. 2): axis 1 is z, axes 2 and 3 are y, the wrist is z, y, z, and at θ = 0 the arm stands straight up. The
+//! maker's joint positions are q = sign · (θ − zero). The shoulder frame has its z axis on axis 1 and its origin at
+//! the height of axis 2; the wrist frame its origin where axes 4, 5 and 6 meet and its z axis on axis 6.
+
+mod inverse;
+mod jet;
+mod posture;
+mod solutions;
+
+pub use posture::{Configuration, Elbow, Posture, Shoulder, Wrist};
+pub use solutions::{Solution, Solutions};
+
+use nalgebra::{Quaternion, UnitQuaternion};
+
+use super::{InverseError, JointJet, JointLimits, Kinematics, ModelError};
+use crate::geometry::{Pose, PoseJet, Rotation, Vector3};
+use crate::math::float::{atan2, hypot, sin_cos};
+
+/// The arm's dimensions (metres) and where its zero lies. Plain data; [`SphericalWristArm::try_new`] checks it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SphericalWristGeometry {
+    /// From axis 1 to axis 2, along the shoulder's x axis (a₁).
+    pub shoulder_offset: f64,
+    /// From axis 2 to axis 3, along the upper arm (c₂). Positive.
+    pub upper_arm: f64,
+    /// From axis 3 to axis 4, along the arm's x axis at θ = 0 (a₂): negative where the forearm lies above the elbow.
+    pub elbow_offset: f64,
+    /// From axis 3 to the wrist centre, along axis 4 (c₃).
+    pub forearm: f64,
+    /// Lateral offset of the arm's plane from axis 1, along the shoulder's y axis (b).
+    pub lateral_offset: f64,
+    /// Where the shoulder frame stands.
+    pub base_from_shoulder: Pose,
+    /// Where the flange sits on the last link.
+    pub wrist_from_flange: Pose,
+    /// +1 where the maker turns a joint as θ does, −1 where he turns it the other way.
+    pub signs: [f64; 6],
+    /// θ at q = 0, in radians.
+    pub zeros: [f64; 6],
+}
+
+/// The seven dimensions of an ortho-parallel arm with spherical wrist (metres), with offsets (radians) and signs as
+/// published in the tables of the ROS-Industrial community: θ = sign · q − offset.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OpwParameters {
+    /// From axis 1 to axis 2.
+    pub a1: f64,
+    /// From axis 3 to axis 4.
+    pub a2: f64,
+    /// Lateral offset.
+    pub b: f64,
+    /// Height of axis 2.
+    pub c1: f64,
+    /// Upper arm.
+    pub c2: f64,
+    /// Forearm.
+    pub c3: f64,
+    /// From the wrist centre to the flange.
+    pub c4: f64,
+    /// Joint offsets.
+    pub offsets: [f64; 6],
+    /// Joint directions, each +1 or −1.
+    pub signs: [f64; 6],
+}
+
+impl OpwParameters {
+    /// The same arm in this library's terms: the base frame's z axis is axis 1, the flange's z axis is axis 6.
+    #[must_use]
+    pub fn geometry(&self) -> SphericalWristGeometry {
+        SphericalWristGeometry {
+            shoulder_offset: self.a1,
+            upper_arm: self.c2,
+            elbow_offset: self.a2,
+            forearm: self.c3,
+            lateral_offset: self.b,
+            base_from_shoulder: Pose::translation(0.0, 0.0, self.c1),
+            wrist_from_flange: Pose::translation(0.0, 0.0, self.c4),
+            signs: self.signs,
+            zeros: self.offsets.map(|offset| -offset),
+        }
+    }
+}
+
+/// A six-axis arm with spherical wrist: forward, inverse with all branches, and joint derivatives in closed form.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SphericalWristArm {
+    geometry: SphericalWristGeometry,
+    limits: JointLimits<6>,
+    /// Distance from axis 3 to the wrist centre.
+    elbow_to_wrist: f64,
+    /// Angle of the wrist centre about axis 3 at θ₃ = 0, with its sine and cosine.
+    elbow_angle: f64,
+    elbow_sin: f64,
+    elbow_cos: f64,
+    shoulder_from_base: Pose,
+    flange_from_wrist: Pose,
+}
+
+impl SphericalWristArm {
+    /// An arm from its dimensions and limits.
+    ///
+    /// # Errors
+    /// [`ModelError`] for a number that is not finite, a link without length, a sign that is neither +1 nor −1.
+    pub fn try_new(geometry: SphericalWristGeometry, limits: JointLimits<6>) -> Result<Self, ModelError> {
+        let g = &geometry;
+        let lengths = [g.shoulder_offset, g.upper_arm, g.elbow_offset, g.forearm, g.lateral_offset];
+        let finite = lengths.iter().chain(&g.zeros).all(|x| x.is_finite());
+        if !(finite && is_finite(&g.base_from_shoulder) && is_finite(&g.wrist_from_flange)) {
+            return Err(ModelError::NotFinite);
+        }
+        for value in [g.upper_arm, hypot(g.elbow_offset, g.forearm)] {
+            if value <= 0.0 {
+                return Err(ModelError::Length { value });
+            }
+        }
+        for (axis, &value) in g.signs.iter().enumerate() {
+            if value != 1.0 && value != -1.0 {
+                return Err(ModelError::Sign { axis, value });
+            }
+        }
+        Ok(Self::of_valid(geometry, limits))
+    }
+
+    /// An arm from dimensions that are known to be valid.
+    pub(super) fn of_valid(geometry: SphericalWristGeometry, limits: JointLimits<6>) -> Self {
+        let g = &geometry;
+        let elbow_to_wrist = hypot(g.elbow_offset, g.forearm);
+        Self {
+            elbow_to_wrist,
+            elbow_angle: atan2(g.elbow_offset, g.forearm),
+            elbow_sin: g.elbow_offset / elbow_to_wrist,
+            elbow_cos: g.forearm / elbow_to_wrist,
+            shoulder_from_base: g.base_from_shoulder.inverse(),
+            flange_from_wrist: g.wrist_from_flange.inverse(),
+            geometry,
+            limits,
+        }
+    }
+
+    /// The arm's dimensions.
+    #[must_use]
+    pub fn geometry(&self) -> &SphericalWristGeometry {
+        &self.geometry
+    }
+
+    /// Distance from axis 3 to the wrist centre, in metres.
+    #[must_use]
+    pub fn elbow_to_wrist(&self) -> f64 {
+        self.elbow_to_wrist
+    }
+
+    /// The arm's limits.
+    #[must_use]
+    pub fn limits(&self) -> &JointLimits<6> {
+        &self.limits
+    }
+
+    /// The paper's angles θ of joint positions q.
+    #[inline]
+    fn thetas(&self, q: &[f64; 6]) -> [f64; 6] {
+        let g = &self.geometry;
+        core::array::from_fn(|i| g.signs[i] * q[i] + g.zeros[i])
+    }
+
+    /// The wrist's pose in the shoulder frame.
+    ///
+    /// R = Rz(θ₁)·Ry(θ₂+θ₃) · Rz(θ₄)·Ry(θ₅)·Rz(θ₆) as quaternions: of half angles, so that no normalization and no
+    /// conversion from a matrix is needed.
+    #[inline]
+    fn shoulder_from_wrist(&self, q: &[f64; 6]) -> Pose {
+        let g = &self.geometry;
+        let [t1, t2, t3, t4, t5, t6] = self.thetas(q);
+        let (s1, c1) = sin_cos(0.5 * t1);
+        let (s23, c23) = sin_cos(0.5 * (t2 + t3));
+        let (s2, c2) = sin_cos(t2);
+        let (s5, c5) = sin_cos(0.5 * t5);
+        let (s_sum, c_sum) = sin_cos(0.5 * (t4 + t6));
+        let (s_difference, c_difference) = sin_cos(0.5 * (t4 - t6));
+        let arm = Quaternion::new(c1 * c23, -s1 * s23, c1 * s23, s1 * c23);
+        let wrist = Quaternion::new(c5 * c_sum, -s5 * s_difference, s5 * c_difference, c5 * s_sum);
+        // Full angles by doubling.
+        let (sin1, cos1) = (2.0 * s1 * c1, c1 * c1 - s1 * s1);
+        let (sin23, cos23) = (2.0 * s23 * c23, c23 * c23 - s23 * s23);
+        let out = g.shoulder_offset + g.upper_arm * s2 + g.elbow_offset * cos23 + g.forearm * sin23;
+        let up = g.upper_arm * c2 - g.elbow_offset * sin23 + g.forearm * cos23;
+        let position =
+            Vector3::new(cos1 * out - sin1 * g.lateral_offset, sin1 * out + cos1 * g.lateral_offset, up);
+        Pose::from_parts(position.into(), UnitQuaternion::new_unchecked(arm * wrist))
+    }
+}
+
+impl Kinematics<6> for SphericalWristArm {
+    #[inline]
+    fn forward(&self, q: &[f64; 6]) -> Pose {
+        let g = &self.geometry;
+        g.base_from_shoulder * self.shoulder_from_wrist(q) * g.wrist_from_flange
+    }
+
+    fn inverse_nearest(&self, base_from_flange: &Pose, seed: &[f64; 6]) -> Result<[f64; 6], InverseError> {
+        self.nearest(base_from_flange, seed)
+    }
+
+    fn joint_jet(&self, base_from_flange: &PoseJet, q: &[f64; 6]) -> Result<JointJet<6>, InverseError> {
+        self.jet(base_from_flange, q)
+    }
+
+    fn position_limits(&self) -> &[(f64, f64); 6] {
+        self.limits.position()
+    }
+
+    fn velocity_limits(&self) -> &[f64; 6] {
+        self.limits.velocity()
+    }
+}
+
+/// Whether every coordinate is a finite number.
+#[inline]
+fn is_finite(pose: &Pose) -> bool {
+    let rotation: &Rotation = &pose.rotation;
+    (pose.translation.vector.sum() + rotation.coords.sum()).is_finite()
+}

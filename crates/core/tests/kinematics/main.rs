@@ -1,0 +1,8 @@
+//! Tests of the kinematics from outside, against what they did not make themselves.
+
+// A test may panic, and so may what it calls.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod joint_jet;
+mod spherical_wrist;
+mod support;
