@@ -71,7 +71,8 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
                     }
                 }
             })?;
-            load.raise(&part);
+            // The plain motion keeps the path's own limits by construction.
+            load.raise(&Load { path: [0.0; 3], ..part });
         }
         Ok((load, busy))
     }

@@ -20,20 +20,9 @@ mod s_curve;
 mod slowdown;
 mod window;
 
-pub use motion::{Order, PathState, Slowdown, Timing, TimingKind, TimingPiece};
+use seamline::kinematics::JointJet;
 
-/// Joint positions and their first three derivatives with respect to the path coordinate.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct JointJet<const N: usize> {
-    /// q.
-    pub position: [f64; N],
-    /// q′ = dq/ds.
-    pub velocity: [f64; N],
-    /// q″.
-    pub acceleration: [f64; N],
-    /// q‴.
-    pub jerk: [f64; N],
-}
+pub use motion::{Order, PathState, Slowdown, Timing, TimingKind, TimingPiece};
 
 /// A path as the joints see it.
 pub trait JointPath<const N: usize> {
