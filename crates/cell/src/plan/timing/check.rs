@@ -3,8 +3,8 @@
 //! A piece is sampled with exact derivatives in time and bisected until
 //! - both ends of an interval predict each other (two-point Hermite formulae, of position and of acceleration), so that
 //!   nothing hides in between: a needle-sharp turn of a wrist shows as a displacement that nothing at the ends foretells;
-//! - the middle lies near the chord wherever the limit is near. The peak of the parabola through the three samples
-//!   then bounds what happens between them.
+//! - the middle lies near the chord wherever the limit is near, so that the parabola through the three samples tells
+//!   what happens between them.
 
 use super::motion::{PathState, TimingPiece};
 use super::{JointJet, JointPath, PathLimits, TimingError, TimingLimits};
@@ -14,9 +14,9 @@ const FIRST_INTERVAL: f64 = 2.5e-3;
 const FIRST_INTERVALS: f64 = 64.0;
 /// Bound on bisections: an interval of 100 s comes down to 1e-10 s.
 const DEPTH: usize = 40;
-/// Bound on bisections that only sharpen the bound.
+/// Bound on bisections that only sharpen a peak.
 const SHARPENING_DEPTH: usize = 8;
-/// From this share of a limit on, the bound between samples is made sharp; the second difference allowed then.
+/// From this share of a limit on, the peak between samples is made sharp; the second difference allowed then.
 const NEAR: f64 = 0.9;
 const BEND: f64 = 0.02;
 /// A jerk, as a share of its limit, that may stay unseen in an interval of at most `SHARP` seconds.
@@ -126,6 +126,18 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
         Ok(load)
     }
 
+    /// The loads of a piece's two halves.
+    pub(super) fn halves(&mut self, piece: &TimingPiece) -> Result<[Load<N>; 2], TimingError<P::Error>> {
+        let start = self.sample(piece, 0.0)?;
+        let middle = self.sample(piece, piece.duration / 2.0)?;
+        let end = self.sample(piece, piece.duration)?;
+        let mut ignore = |_: f64, _: f64, _: &Load<N>| {};
+        Ok([
+            self.interval(piece, &start, &middle, &mut ignore)?,
+            self.interval(piece, &middle, &end, &mut ignore)?,
+        ])
+    }
+
     fn sample(&mut self, piece: &TimingPiece, time: f64) -> Result<Sample<N>, TimingError<P::Error>> {
         let state = piece.at(time);
         let place = state.position.clamp(0.0, self.length);
@@ -196,8 +208,9 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
                 - t * t * t / 120.0 * limit[2] * sum(2);
             // q̈₁ − q̈₀ = h/2 (q⃛₀+q⃛₁) + O(h³)
             let acceleration = limit[1] * change(1) - t / 2.0 * limit[2] * sum(2);
+            let noise = ACCELERATION_NOISE * limit[1] * load.joints[1][i].max(1.0);
             position.abs() <= unseen * sharp * sharp * sharp + POSITION_NOISE
-                && acceleration.abs() <= 5.0 * unseen * sharp + ACCELERATION_NOISE * limit[1]
+                && acceleration.abs() <= 5.0 * unseen * sharp + noise
         })
     }
 
@@ -206,7 +219,8 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
         let jumps = |i: &usize| {
             let position = (end.position[*i] - start.position[*i]).abs();
             let acceleration = (end.shares[1][*i] - start.shares[1][*i]).abs();
-            position > 1e3 * POSITION_NOISE || acceleration > JUMP
+            let share = start.shares[1][*i].abs().max(1.0);
+            position > 1e3 * POSITION_NOISE || acceleration > JUMP * share
         };
         match (0..N).find(jumps) {
             Some(joint) => Err(TimingError::Discontinuous { position: end.place, joint }),
@@ -215,19 +229,23 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
     }
 }
 
-/// Bound on the shares between three evenly spaced samples, and whether it deserves sharpening.
+/// The highest shares on three evenly spaced samples and on the parabola through them, and whether that deserves
+/// sharpening.
 fn peak<const N: usize>(start: &Sample<N>, middle: &Sample<N>, end: &Sample<N>) -> (Load<N>, bool) {
     let mut sharpen = false;
-    let mut bound = |a: f64, m: f64, b: f64| {
-        // The parabola through the samples rises above the highest of them by at most an eighth of the second difference.
-        let bend = (a - 2.0 * m + b).abs();
-        let bound = a.abs().max(m.abs()).max(b.abs()) + bend / 8.0;
-        sharpen |= bound > NEAR && bend > BEND * bound;
-        bound
+    let mut highest = |a: f64, m: f64, b: f64| {
+        let (slope, bend) = ((b - a) / 2.0, a - 2.0 * m + b);
+        let sampled = a.abs().max(m.abs()).max(b.abs());
+        let vertex = if slope.abs() < bend.abs() { (m - slope * slope / (2.0 * bend)).abs() } else { 0.0 };
+        let highest = sampled.max(vertex);
+        sharpen |= highest > NEAR && bend.abs() > BEND * highest;
+        highest
     };
     let joints = core::array::from_fn(|order| {
-        core::array::from_fn(|i| bound(start.shares[order][i], middle.shares[order][i], end.shares[order][i]))
+        core::array::from_fn(|i| {
+            highest(start.shares[order][i], middle.shares[order][i], end.shares[order][i])
+        })
     });
-    let path = core::array::from_fn(|order| bound(start.path[order], middle.path[order], end.path[order]));
+    let path = core::array::from_fn(|order| highest(start.path[order], middle.path[order], end.path[order]));
     (Load { joints, path }, sharpen)
 }

@@ -8,24 +8,21 @@
 //! SI: radians or metres for joints; the path coordinate is what the path makes it (metres, or radians for a turn on
 //! the spot), and the path limits are given in the same unit.
 
+mod assemble;
+mod banded;
 mod check;
+mod coordinate;
+mod crude;
+mod interior_point;
 mod motion;
+mod program;
 mod s_curve;
+mod slowdown;
+mod window;
+
+use seamline::kinematics::JointJet;
 
 pub use motion::{Order, PathState, Slowdown, Timing, TimingKind, TimingPiece};
-
-/// Joint positions and their first three derivatives with respect to the path coordinate.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct JointJet<const N: usize> {
-    /// q.
-    pub position: [f64; N],
-    /// q′ = dq/ds.
-    pub velocity: [f64; N],
-    /// q″.
-    pub acceleration: [f64; N],
-    /// q‴.
-    pub jerk: [f64; N],
-}
 
 /// A path as the joints see it.
 pub trait JointPath<const N: usize> {
@@ -113,27 +110,11 @@ pub fn time_path<const N: usize, P: JointPath<N>>(
     limits: &PathLimits,
 ) -> Result<Timing, TimingError<P::Error>> {
     validate(path.length(), joints, limits)?;
-    let length = path.length();
-    if length == 0.0 {
+    if path.length() == 0.0 {
         return Ok(Timing::new(Vec::new(), TimingKind::Plain, Vec::new()));
     }
-    let curve = s_curve::SCurve::new(length, limits);
-    let mut pieces = curve.pieces();
-    let mut check = check::Check::new(path, joints, limits);
-    let mut kind = TimingKind::Plain;
-    for _ in 0..STRETCHES {
-        let factor = check.pieces(&pieces)?.stretch();
-        if factor <= 1.0 {
-            break;
-        }
-        kind = TimingKind::Stretched;
-        pieces = pieces.iter().map(|piece| piece.stretched(factor)).collect();
-    }
-    Ok(Timing::new(pieces, kind, Vec::new()))
+    assemble::Task { path, joints, limits }.timing()
 }
-
-/// Bound on the rounds of stretching: the second is exact but for the sampling's own error.
-const STRETCHES: usize = 8;
 
 fn validate<const N: usize, E>(
     length: f64,

@@ -134,9 +134,12 @@ pub struct Slowdown {
     pub place: f64,
     /// The least speed.
     pub speed: f64,
+    /// The highest constant speed that the joints could hold all along this stretch; the programmed speed where only
+    /// the change of speed takes longer than programmed.
+    pub sustainable: f64,
     /// The joint that causes it, counted from 0.
     pub joint: usize,
-    /// Which of this joint's limits is the tightest.
+    /// The order of the limit that causes it.
     pub order: Order,
 }
 

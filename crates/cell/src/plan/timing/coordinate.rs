@@ -1,0 +1,134 @@
+//! The coordinate in which the optimizer works: a smooth, monotone s(w).
+//!
+//! w is close to the time that the motion will take, so that even knots in w are even in time, and rest is an
+//! ordinary point: there s = s_w = s_ww = 0 and s_www is not. s(w) is a uniform quintic B-spline, hence C⁴, and it is
+//! monotone because its control points are.
+
+use super::motion::{PathState, TimingPiece};
+
+/// What the motion does at an end of a window.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum End {
+    /// It rests.
+    Rest,
+    /// It runs at the programmed speed, without acceleration.
+    Cruise,
+}
+
+/// s and its derivatives with respect to w.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct CoordinateJet {
+    pub(super) s: f64,
+    pub(super) d1: f64,
+    pub(super) d2: f64,
+    pub(super) d3: f64,
+}
+
+/// Controls at either end that continue the motion beyond it.
+const PAD: usize = 2;
+
+/// s(w) on knots w = 0, h, 2h, …
+#[derive(Debug, Clone)]
+pub(super) struct Coordinate {
+    pub(super) step: f64,
+    /// One control a knot, and [`PAD`] more at either end.
+    controls: Vec<f64>,
+}
+
+impl Coordinate {
+    /// Number of sites: knots and the middles between them.
+    pub(super) fn sites(&self) -> usize {
+        2 * self.knots() - 1
+    }
+
+    /// Number of knots.
+    pub(super) fn knots(&self) -> usize {
+        self.controls.len() - 2 * PAD
+    }
+
+    /// Through samples `s` of the motion at even times `step`, one a knot, which it follows as a spline of controls does:
+    /// smoothly, not exactly. The ends are met exactly.
+    pub(super) fn new(samples: &[f64], step: f64, ends: [End; 2], speed: f64) -> Self {
+        let mut controls = vec![0.0; samples.len() + 2 * PAD];
+        controls[PAD..PAD + samples.len()].copy_from_slice(samples);
+        let (start, end) = (samples[0], samples[samples.len() - 1]);
+        close(&mut controls, start, speed * step, ends[0]);
+        controls.reverse();
+        close(&mut controls, end, -speed * step, ends[1]);
+        controls.reverse();
+        Self { step, controls }
+    }
+
+    /// From a motion in time.
+    pub(super) fn following(pieces: &[TimingPiece], knots: usize, ends: [End; 2], speed: f64) -> Self {
+        let duration: f64 = pieces.iter().map(|piece| piece.duration).sum();
+        let step = duration / (knots - 1) as f64;
+        let mut samples = Vec::with_capacity(knots);
+        let (mut index, mut begun) = (0, 0.0);
+        for knot in 0..knots {
+            let time = knot as f64 * step;
+            while index + 1 < pieces.len() && time > begun + pieces[index].duration {
+                begun += pieces[index].duration;
+                index += 1;
+            }
+            let state = pieces[index].at((time - begun).min(pieces[index].duration));
+            samples.push(quasi_interpolant(&state, step));
+        }
+        let (first, last) = (pieces[0].position, pieces[pieces.len() - 1].end().position);
+        samples[0] = first;
+        samples[knots - 1] = last;
+        Self::new(&samples, step, ends, speed)
+    }
+
+    /// s and its derivatives at a site: knot k is site 2k, the middle between two knots lies between.
+    pub(super) fn at(&self, site: usize) -> CoordinateJet {
+        let h = self.step;
+        let c = &self.controls[site / 2..];
+        // Differences first: near a singularity neighbours differ in the last digits only.
+        let first: [f64; 4] = core::array::from_fn(|i| c[i + 1] - c[i]);
+        let second: [f64; 3] = core::array::from_fn(|i| first[i + 1] - first[i]);
+        let third: [f64; 2] = core::array::from_fn(|i| second[i + 1] - second[i]);
+        if site % 2 == 0 {
+            return CoordinateJet {
+                s: c[2] + (first[3] - first[0] + 27.0 * (first[2] - first[1])) / 120.0,
+                d1: (first[0] + 11.0 * (first[1] + first[2]) + first[3]) / (24.0 * h),
+                d2: (second[0] + 4.0 * second[1] + second[2]) / (6.0 * h * h),
+                d3: (third[0] + third[1]) / (2.0 * h * h * h),
+            };
+        }
+        let first4 = c[5] - c[4];
+        let second3 = first4 - first[3];
+        let third2 = second3 - second[2];
+        CoordinateJet {
+            s: c[2] + first[2] / 2.0 + (first4 - first[0] + 238.0 * (first[3] - first[1])) / 3840.0,
+            d1: (first[0] + first4 + 76.0 * (first[1] + first[3]) + 230.0 * first[2]) / (384.0 * h),
+            d2: (second[0] + second3 + 23.0 * (second[1] + second[2])) / (48.0 * h * h),
+            d3: (third[0] + 6.0 * third[1] + third2) / (8.0 * h * h * h),
+        }
+    }
+}
+
+/// The control that lets a quintic B-spline reproduce cubics: f − h²/4 f″.
+fn quasi_interpolant(state: &PathState, step: f64) -> f64 {
+    state.position - step * step / 4.0 * state.acceleration
+}
+
+/// Sets the controls at the first end: `place` is the coordinate there, `pace` the cruise's way in a knot.
+fn close(controls: &mut [f64], place: f64, pace: f64, end: End) {
+    match end {
+        End::Rest => {
+            // Odd about the end, so that s = place and s_ww = 0; s_w = 0 asks for the first neighbour. A cubic
+            // t³ has these very controls, k³ − 3k/2.
+            let second = controls[PAD + 2] - place;
+            controls[PAD] = place;
+            controls[PAD + 1] = place - second / 10.0;
+            controls[PAD - 1] = place + second / 10.0;
+            controls[PAD - 2] = place - second;
+        }
+        End::Cruise => {
+            for (index, control) in controls[..=2 * PAD].iter_mut().enumerate() {
+                *control = place + pace * (index as f64 - PAD as f64);
+            }
+        }
+    }
+}

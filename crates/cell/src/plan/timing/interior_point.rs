@@ -1,0 +1,311 @@
+//! A primal-dual interior-point method for [`Program`]: Mehrotra's predictor and corrector, linearised anew at every
+//! iteration, infeasible starts allowed.
+//!
+//! Unknowns are the controls c of β, one a knot and one more at either end; for each row g(c) ≤ 0 a slack s > 0 with
+//! g + s = 0, and a dual λ > 0. Each iteration costs one factorization of a banded matrix and four sweeps over
+//! the rows.
+
+use super::banded::Banded;
+use super::program::{Point, Program, ROWS};
+
+/// Bound on iterations.
+const ITERATIONS: usize = 50;
+/// Done when the duality gap, as a share of the duration, the dual residual likewise, and the rows' residual fall below.
+const GAP: f64 = 5e-4;
+const DUAL_RESIDUAL: f64 = 2e-3;
+const RESIDUAL: f64 = 1e-5;
+/// Start: share of the highest constant β, the least slack, and the product of slack and dual.
+const START_SHARE: f64 = 0.9;
+const START_RANGE: [f64; 2] = [0.02, 1.0];
+const START_SLACK: f64 = 0.1;
+const START_PRODUCT: f64 = 0.02;
+/// Knots over which a start blends from a held end.
+const BLEND: f64 = 40.0;
+/// Share of the way to the boundary that a step may go, and the most by which β may shrink in one.
+const TO_BOUNDARY: f64 = 0.99;
+const SHRINK: f64 = 0.2;
+/// Weight of β's slope and bend on the first sites at rest, where no row sees them.
+const REST_WEIGHT: f64 = 2.0;
+const REST_SITES: usize = 5;
+
+/// Why the iterations ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Outcome {
+    Converged,
+    OutOfIterations,
+    /// Numbers ran out of range.
+    Broken,
+}
+
+/// The solver and its memory, reused from problem to problem.
+#[derive(Debug, Default)]
+pub(super) struct InteriorPoint {
+    controls: Vec<f64>,
+    points: Vec<Point>,
+    slack: Vec<[f64; ROWS]>,
+    dual: Vec<[f64; ROWS]>,
+    slack_step: Vec<[f64; ROWS]>,
+    dual_step: Vec<[f64; ROWS]>,
+    matrix: Banded,
+    /// Right-hand side without centring, and what centring adds for a unit product.
+    right: Vec<f64>,
+    centring: Vec<f64>,
+    direction: Vec<f64>,
+    pub(super) iterations: usize,
+}
+
+/// Sums over all rows at the start of an iteration.
+struct Progress {
+    /// Σ s λ
+    gap: f64,
+    /// Highest |g + s|.
+    residual: f64,
+    /// Σ |(∇F + Gᵀ λ) c|
+    dual_residual: f64,
+    /// Duration in knots.
+    duration: f64,
+}
+
+impl InteriorPoint {
+    /// Solves; the controls of β are in [`InteriorPoint::controls`] afterwards.
+    pub(super) fn solve(&mut self, program: &Program) -> Outcome {
+        self.start(program);
+        for iteration in 0..ITERATIONS {
+            self.iterations = iteration;
+            let progress = self.assemble(program);
+            let done = progress.gap <= GAP * progress.duration
+                && progress.dual_residual <= DUAL_RESIDUAL * progress.duration
+                && progress.residual <= RESIDUAL;
+            if done {
+                return Outcome::Converged;
+            }
+            if !(progress.duration.is_finite() && progress.gap.is_finite()) {
+                return Outcome::Broken;
+            }
+            for index in 0..self.controls.len() {
+                if frozen(program, index, self.controls.len()) {
+                    self.matrix.freeze(index);
+                }
+            }
+            if !self.matrix.factor() {
+                return Outcome::Broken;
+            }
+            self.step(program, &progress);
+        }
+        Outcome::OutOfIterations
+    }
+
+    /// Controls of β: knot k lies under number k + 1.
+    pub(super) fn controls(&self) -> &[f64] {
+        &self.controls
+    }
+
+    fn start(&mut self, program: &Program) {
+        let size = program.intervals() + 3;
+        let [low, high] = START_RANGE;
+        let level = (START_SHARE * program.constant_bound()).clamp(low, high);
+        self.controls.clear();
+        self.controls.extend((0..size).map(|index| {
+            let mut value = level;
+            for (held, distance) in program.held.into_iter().zip([index, size - 1 - index]) {
+                let along = ((distance as f64 - 2.0) / BLEND).clamp(0.0, 1.0);
+                let smooth = along * along * (3.0 - 2.0 * along);
+                value = if held { value.max(1.0 + (level - 1.0) * smooth) } else { value };
+            }
+            value
+        }));
+        self.set_points(program);
+        let rows = program.demands.len();
+        for memory in [&mut self.slack, &mut self.dual, &mut self.slack_step, &mut self.dual_step] {
+            memory.clear();
+            memory.resize(rows, [0.0; ROWS]);
+        }
+        for (index, demand) in program.demands.iter().enumerate() {
+            let (values, _) = self.points[index / program.axes].rows(demand);
+            self.slack[index] = values.map(|g| (-g).max(START_SLACK));
+            self.dual[index] = self.slack[index].map(|s| START_PRODUCT / s);
+        }
+    }
+
+    fn set_points(&mut self, program: &Program) {
+        self.points.clear();
+        let sites = (0..program.sites()).map(|site| program.site(site));
+        self.points.extend(sites.map(|site| Point::new(site.value(&self.controls))));
+    }
+
+    /// Builds the normal matrix and the predictor's right-hand side.
+    fn assemble(&mut self, program: &Program) -> Progress {
+        let axes = program.axes;
+        let size = self.controls.len();
+        self.matrix.reset(size);
+        self.right.clear();
+        self.right.resize(size, 0.0);
+        let mut progress = Progress { gap: 0.0, residual: 0.0, dual_residual: 0.0, duration: 0.0 };
+        // ∇F + Gᵀλ, held in the memory of the direction.
+        self.direction.clear();
+        self.direction.resize(size, 0.0);
+        for index in 0..program.sites() {
+            let (site, point) = (program.site(index), self.points[index]);
+            let (gradient, curvature) = objective(program, index, &point, &mut progress.duration);
+            let mut square = [curvature[0], 0.0, 0.0, curvature[1], 0.0, curvature[2]];
+            let mut right = gradient.map(|g| -g);
+            let mut stationary = gradient;
+            for index in index * axes..(index + 1) * axes {
+                let (values, gradients) = point.rows(&program.demands[index]);
+                for row in 0..ROWS {
+                    let (g, [x, y, z]) = (values[row], gradients[row]);
+                    let dual = self.dual[index][row];
+                    // The true jerk row lies below its tangent: what it gives is slack at once.
+                    let slack = self.slack[index][row].max(-g);
+                    self.slack[index][row] = slack;
+                    let weight = dual / slack;
+                    let residual = g + slack;
+                    progress.gap += slack * dual;
+                    progress.residual = progress.residual.max(residual.abs());
+                    let (wx, wy, wz) = (weight * x, weight * y, weight * z);
+                    square[0] += wx * x;
+                    square[1] += wx * y;
+                    square[2] += wx * z;
+                    square[3] += wy * y;
+                    square[4] += wy * z;
+                    square[5] += wz * z;
+                    right[0] -= wx * residual;
+                    right[1] -= wy * residual;
+                    right[2] -= wz * residual;
+                    stationary[0] += dual * x;
+                    stationary[1] += dual * y;
+                    stationary[2] += dual * z;
+                }
+            }
+            self.matrix.add(site.interval, &site.square(&square));
+            site.spread(&right, &mut self.right);
+            site.spread(&stationary, &mut self.direction);
+        }
+        let products = self.direction.iter().zip(&self.controls).enumerate();
+        progress.dual_residual = products
+            .filter(|(index, _)| !frozen(program, *index, size))
+            .map(|(_, (residual, control))| (residual * control).abs())
+            .sum();
+        progress
+    }
+
+    /// Predictor, corrector, and the step.
+    fn step(&mut self, program: &Program, progress: &Progress) {
+        let axes = program.axes;
+        let count = (program.demands.len() * ROWS) as f64;
+        self.set_direction(program, 0.0);
+        // The predictor's steps: how far they could go, and what the products would become.
+        self.centring.clear();
+        self.centring.resize(self.controls.len(), 0.0);
+        let (mut primal, mut dual_length) = (1.0f64, 1.0f64);
+        let (mut by_slack, mut by_dual, mut by_both) = (0.0, 0.0, 0.0);
+        for index in 0..program.sites() {
+            let (site, point) = (program.site(index), self.points[index]);
+            let along = site.value(&self.direction);
+            let (mut inverse, mut second) = ([0.0; 3], [0.0; 3]);
+            for index in index * axes..(index + 1) * axes {
+                let (values, gradients) = point.rows(&program.demands[index]);
+                for row in 0..ROWS {
+                    let (slack, dual) = (self.slack[index][row], self.dual[index][row]);
+                    let slack_step = -(values[row] + slack) - dot(&gradients[row], &along);
+                    let dual_step = -dual - dual / slack * slack_step;
+                    primal = limited(primal, slack, slack_step);
+                    dual_length = limited(dual_length, dual, dual_step);
+                    by_slack += slack_step * dual;
+                    by_dual += slack * dual_step;
+                    by_both += slack_step * dual_step;
+                    let product = slack_step * dual_step;
+                    self.slack_step[index][row] = product;
+                    for axis in 0..3 {
+                        inverse[axis] += gradients[row][axis] / slack;
+                        second[axis] += gradients[row][axis] * product / slack;
+                    }
+                }
+            }
+            site.spread(&inverse, &mut self.centring);
+            site.spread(&second, &mut self.right);
+        }
+        let reached = progress.gap + primal * by_slack + dual_length * by_dual + primal * dual_length * by_both;
+        let share = (reached / progress.gap).clamp(0.0, 1.0);
+        let product = share * share * share * progress.gap / count;
+        self.set_direction(program, product);
+        self.advance(program, product);
+    }
+
+    /// Direction of the controls, for the given product of slack and dual.
+    fn set_direction(&mut self, program: &Program, product: f64) {
+        let size = self.controls.len();
+        self.direction.clear();
+        for index in 0..size {
+            let centring = if product == 0.0 { 0.0 } else { product * self.centring[index] };
+            let value = if frozen(program, index, size) { 0.0 } else { self.right[index] - centring };
+            self.direction.push(value);
+        }
+        self.matrix.solve(&mut self.direction);
+    }
+
+    /// Goes along the corrected direction, as far as slacks, duals and β stay positive.
+    fn advance(&mut self, program: &Program, product: f64) {
+        let axes = program.axes;
+        let (mut primal, mut dual_length) = (1.0f64, 1.0f64);
+        for index in 0..program.sites() {
+            let (site, point) = (program.site(index), self.points[index]);
+            let along = site.value(&self.direction);
+            primal = limited(primal, (1.0 - SHRINK) * point.x[0], along[0]);
+            for index in index * axes..(index + 1) * axes {
+                let (values, gradients) = point.rows(&program.demands[index]);
+                for row in 0..ROWS {
+                    let (slack, dual) = (self.slack[index][row], self.dual[index][row]);
+                    let second = self.slack_step[index][row];
+                    let slack_step = -(values[row] + slack) - dot(&gradients[row], &along);
+                    let dual_step = (product - second - dual * slack_step) / slack - dual;
+                    primal = limited(primal, slack, slack_step);
+                    dual_length = limited(dual_length, dual, dual_step);
+                    self.slack_step[index][row] = slack_step;
+                    self.dual_step[index][row] = dual_step;
+                }
+            }
+        }
+        let (primal, dual_length) = (TO_BOUNDARY * primal, TO_BOUNDARY * dual_length);
+        move_along(&mut self.slack, &self.slack_step, primal);
+        move_along(&mut self.dual, &self.dual_step, dual_length);
+        for (control, step) in self.controls.iter_mut().zip(&self.direction) {
+            *control += primal * step;
+        }
+        self.set_points(program);
+    }
+}
+
+/// Whether a control is held: three at a held end.
+fn frozen(program: &Program, index: usize, size: usize) -> bool {
+    (program.held[0] && index < 3) || (program.held[1] && index + 3 >= size)
+}
+
+/// Gradient and diagonal curvature of the duration (in knots) at one site, in terms of β, h β′, h² β″: Simpson's rule.
+fn objective(program: &Program, site: usize, point: &Point, duration: &mut f64) -> ([f64; 3], [f64; 3]) {
+    let last = program.sites() - 1;
+    let weight = if site == 0 || site == last { 1.0 } else if site % 2 == 1 { 4.0 } else { 2.0 } / 6.0;
+    let [beta, slope, bend] = point.x;
+    *duration += weight * point.root;
+    let gradient = -0.5 * weight * point.root / beta;
+    let curvature = -1.5 * gradient / beta;
+    let at_rest = (site < REST_SITES && !program.held[0]) || (site + REST_SITES > last && !program.held[1]);
+    let smooth = if at_rest { REST_WEIGHT } else { 0.0 };
+    ([gradient, smooth * slope, smooth * bend], [curvature, smooth, smooth])
+}
+
+fn limited(length: f64, value: f64, step: f64) -> f64 {
+    if step < 0.0 { length.min(-value / step) } else { length }
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn move_along(values: &mut [[f64; ROWS]], steps: &[[f64; ROWS]], length: f64) {
+    for (values, steps) in values.iter_mut().zip(steps) {
+        for (value, step) in values.iter_mut().zip(steps) {
+            *value += length * step;
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! One window of the path: the fastest motion through it.
+
+use super::check::{Check, Load};
+use super::coordinate::{Coordinate, End};
+use super::interior_point::{InteriorPoint, Outcome};
+use super::motion::{PathState, TimingPiece};
+use super::program::{Demand, Program};
+use super::{JointPath, PathLimits, TimingError, TimingLimits, crude};
+
+/// Distance of knots in seconds, on the way from the first guess to the motion.
+const STEP: f64 = 5e-3;
+/// Rounds that re-time: the solution becomes the coordinate of the next.
+const RETIMINGS: usize = 2;
+/// Rounds that lower limits where the motion passes them between knots.
+const REPAIRS: usize = 6;
+/// A motion that has to be stretched by less than this is good enough.
+const STRETCH: f64 = 1.0005;
+/// Shares of a limit that a repair leaves: what it aims at, and the least.
+const AIM: f64 = 0.9995;
+const LEAST_SHARE: f64 = 0.2;
+
+/// Slack of the speed limit at a held end; sites next to it whose speed limit is not lowered.
+const HELD_SLACK: f64 = 0.01;
+const HELD_SITES: usize = 20;
+
+/// A stretch of the path that is solved by itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Window {
+    pub(super) from: f64,
+    pub(super) to: f64,
+    pub(super) ends: [End; 2],
+}
+
+/// A motion through a window, and the factor on time that it still needs.
+pub(super) struct Passage {
+    pub(super) pieces: Vec<TimingPiece>,
+    pub(super) stretch: f64,
+}
+
+impl Passage {
+    /// Duration with the stretching.
+    pub(super) fn duration(&self) -> f64 {
+        time(&self.pieces) * self.stretch
+    }
+}
+
+/// The memory of the solver, reused from window to window.
+#[derive(Debug, Default)]
+pub(super) struct Workshop {
+    solver: InteriorPoint,
+    program: Program,
+    /// Share of each limit that is used, per site, axis and order.
+    shares: Vec<[f64; 3]>,
+}
+
+impl Workshop {
+    /// The fastest motion through the window that was found.
+    pub(super) fn pass<const N: usize, P: JointPath<N>>(
+        &mut self,
+        path: &mut P,
+        joints: &TimingLimits<N>,
+        limits: &PathLimits,
+        window: &Window,
+    ) -> Result<Passage, TimingError<P::Error>> {
+        let mut coordinate = crude::coordinate(path, joints, limits, window, STEP)?;
+        let axes = N + 1;
+        let mut best: Option<Passage> = None;
+        self.shares.clear();
+        self.shares.resize(coordinate.sites() * axes, [1.0; 3]);
+        // At a held end the speed is the programmed one, and no unknown can change it.
+        for (end, site) in window.ends.into_iter().zip([0, coordinate.sites() - 1]) {
+            if end == End::Cruise {
+                self.shares[site * axes + N][0] = 1.0 + HELD_SLACK;
+            }
+        }
+        for round in 0..RETIMINGS + REPAIRS {
+            self.set_program(path, joints, limits, window, &coordinate)?;
+            let outcome = self.solver.solve(&self.program);
+            if outcome == Outcome::Broken {
+                break;
+            }
+            let pieces = self.pieces(&coordinate, window, limits.speed);
+            let mut check = Check::new(path, joints, limits);
+            let mut loads = Vec::with_capacity(2 * pieces.len());
+            let mut load = Load::NONE;
+            for piece in &pieces {
+                let halves = check.halves(piece)?;
+                for half in halves {
+                    load.raise(&half);
+                }
+                loads.extend(halves);
+            }
+            let stretch = load.stretch().max(1.0);
+            if std::env::var("TIMING_TRACE").is_ok() {
+                let t: f64 = pieces.iter().map(|p| p.duration).sum();
+                eprintln!("  round {round} {outcome:?} its {} knots {} T {t:.5} stretch {stretch:.5} orders {:.4?}", self.solver.iterations, coordinate.knots(), load.orders());
+            }
+            if std::env::var("TIMING_TRACE").as_deref() == Ok("2") && round == RETIMINGS {
+                for (i, l) in loads.iter().enumerate() {
+                    if l.stretch() > 1.003 {
+                        let piece = &pieces[i/2];
+                        eprintln!("    piece {i} dt {:.5} s {:.6} v {:.4} j {:?} load j {:.3?} {:.3?} a {:.3?}", piece.duration, piece.position, piece.velocity, [piece.jerk, piece.at(piece.duration/2.0).jerk, piece.end().jerk], l.joints[2], l.path[2], l.joints[1]);
+                    }
+                }
+            }
+            if round < RETIMINGS {
+                coordinate = Coordinate::following(&pieces, coordinate.knots(), window.ends, limits.speed);
+            } else {
+                self.tighten(&loads, window, axes);
+            }
+            let passage = Passage { pieces, stretch };
+            if best.as_ref().is_none_or(|best| passage.duration() < best.duration()) {
+                best = Some(passage);
+            }
+            if round >= RETIMINGS && stretch <= STRETCH {
+                break;
+            }
+        }
+        Ok(best.unwrap_or(Passage { pieces: Vec::new(), stretch: f64::INFINITY }))
+    }
+
+    fn set_program<const N: usize, P: JointPath<N>>(
+        &mut self,
+        path: &mut P,
+        joints: &TimingLimits<N>,
+        limits: &PathLimits,
+        window: &Window,
+        coordinate: &Coordinate,
+    ) -> Result<(), TimingError<P::Error>> {
+        let Program { demands, axes, held } = &mut self.program;
+        *axes = N + 1;
+        *held = window.ends.map(|end| end == End::Cruise);
+        demands.clear();
+        for site in 0..coordinate.sites() {
+            let w = coordinate.at(site);
+            let s = w.s.clamp(window.from, window.to);
+            let jet = path.jet(s).map_err(|error| TimingError::Path { position: s, error })?;
+            let shares = &self.shares[site * *axes..(site + 1) * *axes];
+            for i in 0..N {
+                let (d1, d2, d3) = (jet.velocity[i], jet.acceleration[i], jet.jerk[i]);
+                let derivatives = [
+                    d1 * w.d1,
+                    d2 * w.d1 * w.d1 + d1 * w.d2,
+                    d3 * w.d1 * w.d1 * w.d1 + 3.0 * d2 * w.d1 * w.d2 + d1 * w.d3,
+                ];
+                let limits = [joints.velocity[i], joints.acceleration[i], joints.jerk[i]];
+                demands.push(Demand::new(derivatives, scaled(limits, shares[i]), coordinate.step));
+            }
+            let limits = [limits.speed, limits.acceleration, limits.jerk];
+            let demand = Demand::new([w.d1, w.d2, w.d3], scaled(limits, shares[N]), coordinate.step);
+            demands.push(demand);
+        }
+        Ok(())
+    }
+
+    /// The motion in time that the solution stands for: one piece between two knots.
+    fn pieces(&self, coordinate: &Coordinate, window: &Window, speed: f64) -> Vec<TimingPiece> {
+        let controls = self.solver.controls();
+        let step = coordinate.step;
+        let last = coordinate.knots() - 1;
+        let state = |knot: usize| {
+            let w = coordinate.at(2 * knot);
+            let [a, b, c] = [controls[knot], controls[knot + 1], controls[knot + 2]];
+            let beta = (a + 4.0 * b + c) / 6.0;
+            let slope = (c - a) / (2.0 * step);
+            let mut state = PathState {
+                position: w.s,
+                velocity: w.d1 * beta.sqrt(),
+                acceleration: w.d2 * beta + w.d1 * slope / 2.0,
+                jerk: 0.0,
+            };
+            if knot == 0 || knot == last {
+                let place = if knot == 0 { window.from } else { window.to };
+                let end = if knot == 0 { window.ends[0] } else { window.ends[1] };
+                let velocity = if end == End::Rest { 0.0 } else { speed };
+                state = PathState { position: place, velocity, ..PathState::default() };
+            }
+            state
+        };
+        let mut start = state(0);
+        (0..last)
+            .map(|knot| {
+                let end = state(knot + 1);
+                let piece = TimingPiece::joining(&start, &end, step * duration(&controls[knot..knot + 4]));
+                start = end;
+                piece
+            })
+            .collect()
+    }
+
+    /// Lowers the limits of both sites around half a piece by what it takes too much.
+    fn tighten<const N: usize>(&mut self, loads: &[Load<N>], window: &Window, axes: usize) {
+        for (half, load) in loads.iter().enumerate() {
+            let near_held = (window.ends[0] == End::Cruise && half < HELD_SITES)
+                || (window.ends[1] == End::Cruise && half + HELD_SITES >= loads.len());
+            for axis in 0..axes {
+                for order in 0..3 {
+                    let share = if axis < N { load.joints[order][axis] } else { load.path[order] };
+                    if share <= AIM || (near_held && axis == N && order == 0) {
+                        continue;
+                    }
+                    for site in [half, half + 1] {
+                        let used = &mut self.shares[site * axes + axis][order];
+                        *used = (*used * AIM / share).max(LEAST_SHARE);
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn scaled(limits: [f64; 3], shares: [f64; 3]) -> [f64; 3] {
+    core::array::from_fn(|order| limits[order] * shares[order])
+}
+
+fn time(pieces: &[TimingPiece]) -> f64 {
+    pieces.iter().map(|piece| piece.duration).sum()
+}
+
+/// ∫ β^(−1/2) over one interval between knots, in knots: Gauss's rule with four nodes, of which β sees a cubic.
+fn duration(controls: &[f64]) -> f64 {
+    const NODES: [(f64, f64); 4] = [
+        (0.069_431_844_202_973_7, 0.173_927_422_568_726_93),
+        (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+        (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+        (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+    ];
+    NODES
+        .iter()
+        .map(|&(x, weight)| {
+            let y = 1.0 - x;
+            let beta = (y * y * y * controls[0]
+                + (3.0 * x * x * x - 6.0 * x * x + 4.0) * controls[1]
+                + (3.0 * y * y * y - 6.0 * y * y + 4.0) * controls[2]
+                + x * x * x * controls[3])
+                / 6.0;
+            weight / beta.sqrt()
+        })
+        .sum()
+}
