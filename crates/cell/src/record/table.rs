@@ -20,10 +20,13 @@ impl Verdict {
     }
 }
 
-/// A number with about four significant digits and no exponent.
+/// A number with about four significant digits; with an exponent only where it is very small.
 #[must_use]
 pub fn rounded(value: f64) -> String {
     let magnitude = value.abs();
+    if magnitude > 0.0 && magnitude < 1e-3 {
+        return format!("{value:.1e}");
+    }
     let digits = match magnitude {
         0.0 => 0,
         m if m >= 1000.0 => 0,

@@ -37,7 +37,8 @@ pub struct MoveFigures {
     /// Greatest speed in the constant part.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_max_mm_s: Option<f64>,
-    /// Greatest relative error of the speed in the constant part against the programmed speed times the override.
+    /// Greatest distance of the speed in the constant part from the programmed speed times the override, as a fraction
+    /// of the programmed speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_error_max: Option<f64>,
     /// Greatest distance from the programmed line (MOVL).
@@ -183,13 +184,12 @@ impl Current {
             && before.segment == sample.segment
         {
             let expected = speed_programmed * 0.5 * (before.override_rate + sample.override_rate);
-            self.take_speed(speed, expected);
+            self.take_speed(speed, (speed - expected).abs() / speed_programmed);
         }
         distance
     }
 
-    fn take_speed(&mut self, speed: f64, expected: f64) {
-        let error = if expected > 0.0 { (speed / expected - 1.0).abs() } else { 0.0 };
+    fn take_speed(&mut self, speed: f64, error: f64) {
         let so_far = self.speed.unwrap_or(Speed { least: speed, greatest: speed, error });
         self.speed = Some(Speed {
             least: so_far.least.min(speed),

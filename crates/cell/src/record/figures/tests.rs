@@ -176,7 +176,7 @@ fn line_figures() {
     assert_eq!(deviation * 1e3, line.straightness_max_mm.unwrap());
 }
 
-/// The speed error is held against programmed speed times override, and only in the constant part.
+/// The speed is held against programmed speed times override, and only in the constant part.
 #[test]
 fn speed_is_judged_in_the_constant_part_only() {
     let path = Path::line(&Pose::identity(), &Pose::translation(1.0, 0.0, 0.0));
@@ -195,7 +195,7 @@ fn speed_is_judged_in_the_constant_part_only() {
     let line = &findings.moves[0];
     assert!((line.speed_min_mm_s.unwrap() - 50.0).abs() < 1e-6);
     assert!((line.speed_max_mm_s.unwrap() - 51.0).abs() < 1e-6);
-    assert!((line.speed_error_max.unwrap() - 0.02).abs() < 1e-6);
+    assert!((line.speed_error_max.unwrap() - 0.01).abs() < 1e-6);
 }
 
 /// An arc run 2 µm too wide, then a turn on the spot.
