@@ -61,6 +61,10 @@ pub struct RunInfo {
 }
 
 /// What a segment programs.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one value a segment, and plain data that is copied is worth more"
+)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SegmentKind {
     /// A move in joint space: MOVJ.

@@ -1,0 +1,155 @@
+//! How far a pose lies from a programmed path.
+
+use std::f64::consts::{PI, TAU};
+
+use seamline::geometry::{Pose, Rotation, Vector3};
+use seamline::path::{Arc, Curve, Measure, Path};
+
+/// Where a pose stands with respect to a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Deviation {
+    /// Path coordinate of the nearest point: metres, or radians for a turn on the spot.
+    pub(super) s: f64,
+    /// Distance from the line or arc, in metres.
+    pub(super) distance: f64,
+    /// Angle from the programmed orientation at `s`, in radians.
+    pub(super) angle: f64,
+}
+
+/// A path prepared for the question.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Programmed {
+    curve: Curve,
+    length: f64,
+    measure: Measure,
+    start: Rotation,
+    /// The whole turn of the orientation, as a rotation vector.
+    turn: Vector3,
+}
+
+impl Programmed {
+    pub(super) fn new(path: &Path) -> Self {
+        let length = path.length();
+        let (start, end) = (path.pose(0.0).rotation, path.pose(length).rotation);
+        let turn = (end * start.inverse()).scaled_axis();
+        Self { curve: *path.curve(), length, measure: path.measure(), start, turn }
+    }
+
+    pub(super) fn deviation(&self, pose: &Pose) -> Deviation {
+        let position = pose.translation.vector;
+        let (on_curve, distance) = match &self.curve {
+            Curve::Line { start, direction, length } => from_line(&position, start, direction, *length),
+            Curve::Arc(arc) => from_arc(&position, arc),
+        };
+        let turned = pose.rotation * self.start.inverse();
+        let s = match self.measure {
+            Measure::Length => on_curve,
+            Measure::Angle => nearest_turn(&turned, &self.turn),
+        };
+        let fraction = if self.length > 0.0 { s / self.length } else { 0.0 };
+        let programmed = Rotation::from_scaled_axis(self.turn * fraction);
+        Deviation { s, distance, angle: (turned * programmed.inverse()).angle() }
+    }
+}
+
+fn from_line(position: &Vector3, start: &Vector3, direction: &Vector3, length: f64) -> (f64, f64) {
+    let offset = position - start;
+    let s = offset.dot(direction).clamp(0.0, length);
+    (s, (offset - direction * s).norm())
+}
+
+/// Beyond the ends of the arc the nearest end counts.
+fn from_arc(position: &Vector3, arc: &Arc) -> (f64, f64) {
+    let offset = position - arc.centre;
+    let angle = offset.dot(&arc.tangent).atan2(offset.dot(&arc.radial)).rem_euclid(TAU);
+    let opposite = 0.5 * arc.angle + PI;
+    let angle = match angle {
+        angle if angle <= arc.angle => angle,
+        angle if angle < opposite => arc.angle,
+        _ => 0.0,
+    };
+    let nearest = (arc.radial * angle.cos() + arc.tangent * angle.sin()) * arc.radius;
+    (arc.radius * angle, (offset - nearest).norm())
+}
+
+/// How far along `turn` (a rotation vector) a rotation has come: the angle that leaves the least rest.
+fn nearest_turn(turned: &Rotation, turn: &Vector3) -> f64 {
+    let whole = turn.norm();
+    if whole == 0.0 {
+        return 0.0;
+    }
+    // A rotation by φ about u is (cos φ/2, u sin φ/2); both signs are the same rotation.
+    let sine = turned.imag().dot(turn) / whole;
+    let angle = 2.0 * sine.atan2(turned.scalar());
+    let angle = if angle > PI {
+        angle - TAU
+    } else if angle < -PI {
+        angle + TAU
+    } else {
+        angle
+    };
+    angle.clamp(0.0, whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::testing::Random;
+
+    fn pose(random: &mut Random) -> Pose {
+        let mut vector = |size: f64| {
+            Vector3::new(random.within(-size, size), random.within(-size, size), random.within(-size, size))
+        };
+        Pose::new(vector(1.0), vector(1.5))
+    }
+
+    fn perpendicular(direction: &Vector3) -> Vector3 {
+        let other = if direction.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
+        direction.cross(&other).normalize()
+    }
+
+    /// 2,000 random lines, arcs and turns on the spot: a pose moved off the path by a known distance and angle is found
+    /// with just these.
+    #[test]
+    fn known_offsets_are_found() {
+        let mut random = Random::new(3);
+        for case in 0..2000 {
+            let (start, via, mut end) = (pose(&mut random), pose(&mut random), pose(&mut random));
+            if case % 3 == 2 {
+                end.translation = start.translation;
+            }
+            let path = match case % 3 {
+                0 => Path::arc(&start, &via, &end).unwrap(),
+                _ => Path::line(&start, &end),
+            };
+            let s = path.length() * random.within(0.05, 0.95);
+            let jet = path.jet(s);
+            let distance = random.within(0.0, 1e-3);
+            let angle = random.within(0.0, 1e-3);
+            let sideways = perpendicular(&if case % 3 == 2 { Vector3::x() } else { jet.linear[0] });
+            let axis = perpendicular(&jet.angular[0].normalize());
+            let tilted = Pose::from_parts(
+                (jet.pose.translation.vector + sideways * distance).into(),
+                Rotation::from_scaled_axis(axis * angle) * jet.pose.rotation,
+            );
+            let found = Programmed::new(&path).deviation(&tilted);
+            assert!((found.s - s).abs() < 1e-9, "case {case}: {} for {s}", found.s);
+            assert!((found.distance - distance).abs() < 1e-12, "case {case}");
+            assert!((found.angle - angle).abs() < 1e-9, "case {case}: {} for {angle}", found.angle);
+        }
+    }
+
+    /// Points beyond the ends are measured from the ends, on a line and on an arc.
+    #[test]
+    fn overshoot_counts() {
+        let at = |x: f64, y: f64| Pose::translation(x, y, 0.0);
+        let line = Programmed::new(&Path::line(&at(0.0, 0.0), &at(1.0, 0.0)));
+        assert_eq!(line.deviation(&at(1.5, 0.0)).distance, 0.5);
+        assert_eq!(line.deviation(&at(-0.25, 0.0)).distance, 0.25);
+        let side = std::f64::consts::FRAC_1_SQRT_2;
+        let arc = Programmed::new(&Path::arc(&at(1.0, 0.0), &at(side, side), &at(0.0, 1.0)).unwrap());
+        assert!((arc.deviation(&at(1.0, -0.1)).distance - 0.1).abs() < 1e-2);
+        assert_eq!(arc.deviation(&at(1.0, -0.1)).s, 0.0);
+        assert!((arc.deviation(&at(-0.1, 1.0)).s - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+    }
+}

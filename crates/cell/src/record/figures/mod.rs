@@ -1,0 +1,158 @@
+//! Figures of a run, taken from its samples as they come.
+
+mod deviation;
+mod joints;
+mod moves;
+
+pub use joints::{JointFigures, Peak};
+pub use moves::MoveFigures;
+
+use serde::Serialize;
+
+use self::joints::{Differences, JointWatch, ORDERS, middle};
+use self::moves::MoveWatch;
+use super::info::{Event, RunInfo, SegmentInfo};
+use super::plot::{Derived, PlotCollector, PlotData};
+use super::sample::Sample;
+
+/// Seam corrections and errors over the run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SeamFigures {
+    /// Greatest correction across the seam.
+    pub lateral_max_mm: f64,
+    /// Greatest correction in height.
+    pub height_max_mm: f64,
+    /// Root mean square of the distance from the true seam, where it is known.
+    pub error_rms_mm: Option<f64>,
+    /// Greatest distance from the true seam, where it is known.
+    pub error_max_mm: Option<f64>,
+}
+
+/// Turns the stream of samples into figures and plot data. Takes memory for the segments and events of the run, and
+/// a bounded amount beside them.
+#[derive(Debug, Clone)]
+pub struct Analysis {
+    period: f64,
+    differences: Differences,
+    joints: JointWatch,
+    moves: MoveWatch,
+    seam: SeamWatch,
+    plot: PlotCollector,
+    cycles: u64,
+    duration: f64,
+}
+
+/// All that an [`Analysis`] found.
+#[derive(Debug, Clone)]
+pub struct Findings {
+    /// Cycles seen.
+    pub cycles: u64,
+    /// Time of the last sample, in seconds.
+    pub duration: f64,
+    /// Figures of each joint.
+    pub joints: Vec<JointFigures>,
+    /// The segments that were executed, in order.
+    pub segments: Vec<SegmentInfo>,
+    /// The figures of these segments.
+    pub moves: Vec<MoveFigures>,
+    /// Seam figures, where there was a correction or a known error.
+    pub seam: Option<SeamFigures>,
+    /// Data for plots.
+    pub plot: PlotData,
+}
+
+impl Analysis {
+    /// An analysis of a run that is about to begin.
+    #[must_use]
+    pub fn new(run: &RunInfo) -> Self {
+        Self {
+            period: run.period,
+            differences: Differences::new(run.period),
+            joints: JointWatch::new(&run.joints, run.period),
+            moves: MoveWatch::new(run.period),
+            seam: SeamWatch::default(),
+            plot: PlotCollector::new(run.joints.len()),
+            cycles: 0,
+            duration: 0.0,
+        }
+    }
+
+    /// Announces a segment, at the latest before its first sample.
+    pub fn segment(&mut self, segment: SegmentInfo) {
+        self.moves.announce(segment);
+    }
+
+    /// Reports an event, at the latest before the first sample after its time.
+    pub fn event(&mut self, event: Event) {
+        self.plot.announce(event);
+    }
+
+    /// Takes the next cycle.
+    pub fn sample(&mut self, sample: &Sample) {
+        self.cycles += 1;
+        self.duration = sample.time;
+        let derivatives = self.differences.push(sample);
+        self.joints.push(sample, &derivatives);
+        let moment = self.moves.push(sample);
+        self.seam.push(sample);
+        let timed: [_; ORDERS] = std::array::from_fn(|order| {
+            (middle(sample.time, order + 1, self.period), derivatives.values[order])
+        });
+        let derived = Derived {
+            derivatives: &timed[..derivatives.orders],
+            speed: (middle(sample.time, 1, self.period), moment.speed),
+            deviation: moment.deviation,
+            entered: moment.entered.as_ref(),
+        };
+        self.plot.push(sample, &derived);
+    }
+
+    /// The end of the run.
+    #[must_use]
+    pub fn finish(self) -> Findings {
+        let (segments, moves) = self.moves.finish();
+        Findings {
+            cycles: self.cycles,
+            duration: self.duration,
+            joints: self.joints.finish(),
+            segments,
+            moves,
+            seam: self.seam.finish(),
+            plot: self.plot.finish(),
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct SeamWatch {
+    lateral: f64,
+    height: f64,
+    error: f64,
+    squares: f64,
+    known: u64,
+}
+
+impl SeamWatch {
+    fn push(&mut self, sample: &Sample) {
+        self.lateral = self.lateral.max(sample.seam_lateral.abs());
+        self.height = self.height.max(sample.seam_height.abs());
+        if !sample.seam_error.is_nan() {
+            self.known += 1;
+            self.squares += sample.seam_error * sample.seam_error;
+            self.error = self.error.max(sample.seam_error.abs());
+        }
+    }
+
+    fn finish(self) -> Option<SeamFigures> {
+        let known = self.known > 0;
+        (known || self.lateral > 0.0 || self.height > 0.0).then(|| SeamFigures {
+            lateral_max_mm: self.lateral * 1e3,
+            height_max_mm: self.height * 1e3,
+            error_rms_mm: known.then(|| (self.squares / self.known as f64).sqrt() * 1e3),
+            error_max_mm: known.then_some(self.error * 1e3),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,227 @@
+//! Path and speed figures of every segment.
+
+use std::collections::VecDeque;
+
+use seamline::path::{Curve, Measure};
+use serde::Serialize;
+
+use super::deviation::{Deviation, Programmed};
+use super::joints::follows;
+use crate::record::info::{SegmentInfo, SegmentKind};
+use crate::record::sample::{RunMode, Sample};
+
+/// Figures of one executed segment. What a kind of segment does not have is left out.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MoveFigures {
+    /// Running number of the segment.
+    pub segment: u32,
+    /// Line of the job file.
+    pub line: u32,
+    /// `MOVJ`, `MOVL`, `MOVC` or `dwell`.
+    pub kind: &'static str,
+    /// The arc is lit.
+    pub arc: bool,
+    /// Time of the first sample.
+    pub start_s: f64,
+    /// Time of the last sample.
+    pub end_s: f64,
+    /// Length of the tool path.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub length_mm: Option<f64>,
+    /// Programmed speed of the tool centre point.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_programmed_mm_s: Option<f64>,
+    /// Least speed in the constant part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_min_mm_s: Option<f64>,
+    /// Greatest speed in the constant part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_max_mm_s: Option<f64>,
+    /// Greatest distance of the speed in the constant part from the programmed speed times the override, as a fraction
+    /// of the programmed speed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_error_max: Option<f64>,
+    /// Greatest distance from the programmed line (MOVL).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub straightness_max_mm: Option<f64>,
+    /// Greatest distance from the programmed arc (MOVC).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub arc_deviation_max_mm: Option<f64>,
+    /// Greatest angle from the programmed orientation, which follows the geodesic.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub orientation_deviation_max_rad: Option<f64>,
+}
+
+impl MoveFigures {
+    /// Greatest distance from the programmed line or arc.
+    #[must_use]
+    pub fn path_deviation_max_mm(&self) -> Option<f64> {
+        self.straightness_max_mm.or(self.arc_deviation_max_mm)
+    }
+}
+
+/// Follows the samples through the programmed segments.
+#[derive(Debug, Clone)]
+pub(super) struct MoveWatch {
+    period: f64,
+    /// Segments announced and not reached yet.
+    ahead: VecDeque<SegmentInfo>,
+    current: Option<Current>,
+    last: Option<Sample>,
+    done: Vec<(SegmentInfo, MoveFigures)>,
+}
+
+/// What the move watch finds in one sample.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moment {
+    /// Mean speed of the tool centre point since the last sample, in m/s; NaN for the first and after a gap.
+    pub(super) speed: f64,
+    /// Distance from the programmed path, in metres; NaN where there is none.
+    pub(super) deviation: f64,
+    /// The segment that has just been entered.
+    pub(super) entered: Option<SegmentInfo>,
+}
+
+#[derive(Debug, Clone)]
+struct Current {
+    info: SegmentInfo,
+    programmed: Option<Programmed>,
+    start: f64,
+    end: f64,
+    distance: f64,
+    angle: f64,
+    speed: Option<Speed>,
+    /// Path coordinate of the last sample.
+    last_s: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Speed {
+    least: f64,
+    greatest: f64,
+    error: f64,
+}
+
+impl MoveWatch {
+    pub(super) fn new(period: f64) -> Self {
+        Self { period, ahead: VecDeque::new(), current: None, last: None, done: Vec::new() }
+    }
+
+    /// Announces a segment before its first sample.
+    pub(super) fn announce(&mut self, info: SegmentInfo) {
+        self.ahead.push_back(info);
+    }
+
+    pub(super) fn push(&mut self, sample: &Sample) -> Moment {
+        let before = self.last.replace(*sample).filter(|last| follows(last.time, sample.time, self.period));
+        let speed = before.as_ref().map_or(f64::NAN, |last| {
+            (sample.tcp.translation.vector - last.tcp.translation.vector).norm() / self.period
+        });
+        let entered = self.enter(sample);
+        let deviation =
+            self.current.as_mut().map_or(f64::NAN, |current| current.push(sample, before.as_ref(), speed));
+        Moment { speed, deviation, entered }
+    }
+
+    /// Goes on to the sample's segment.
+    fn enter(&mut self, sample: &Sample) -> Option<SegmentInfo> {
+        if self.current.as_ref().map_or(0, |current| current.info.segment) == sample.segment {
+            return None;
+        }
+        self.leave();
+        while self.ahead.front().is_some_and(|info| info.segment < sample.segment) {
+            self.ahead.pop_front();
+        }
+        self.ahead.front().filter(|info| info.segment == sample.segment)?;
+        let info = self.ahead.pop_front()?;
+        self.current = Some(Current::new(info, sample.time));
+        Some(info)
+    }
+
+    fn leave(&mut self) {
+        if let Some(current) = self.current.take() {
+            self.done.push((current.info, current.figures()));
+        }
+    }
+
+    /// The executed segments in order.
+    pub(super) fn finish(mut self) -> (Vec<SegmentInfo>, Vec<MoveFigures>) {
+        self.leave();
+        self.done.into_iter().unzip()
+    }
+}
+
+impl Current {
+    fn new(info: SegmentInfo, time: f64) -> Self {
+        let programmed = match &info.kind {
+            SegmentKind::Path(path) => Some(Programmed::new(path)),
+            _ => None,
+        };
+        Self {
+            info,
+            programmed,
+            start: time,
+            end: time,
+            distance: 0.0,
+            angle: 0.0,
+            speed: None,
+            last_s: f64::NAN,
+        }
+    }
+
+    /// Takes a sample of this segment; returns its distance from the path.
+    fn push(&mut self, sample: &Sample, before: Option<&Sample>, speed: f64) -> f64 {
+        self.end = sample.time;
+        let Some(programmed) = &self.programmed else { return f64::NAN };
+        let Deviation { s, distance, angle } = programmed.deviation(&sample.tcp);
+        self.distance = self.distance.max(distance);
+        self.angle = self.angle.max(angle);
+        // Both ends of the cycle must lie in the constant part, of this segment.
+        let last_s = std::mem::replace(&mut self.last_s, s);
+        let constant = self.info.constant_part.is_some_and(|[from, to]| from <= last_s && s <= to);
+        if let (true, Some(before), Some(speed_programmed)) = (constant, before, self.info.speed)
+            && sample.mode == RunMode::Running
+            && before.segment == sample.segment
+        {
+            let expected = speed_programmed * 0.5 * (before.override_rate + sample.override_rate);
+            self.take_speed(speed, (speed - expected).abs() / speed_programmed);
+        }
+        distance
+    }
+
+    fn take_speed(&mut self, speed: f64, error: f64) {
+        let so_far = self.speed.unwrap_or(Speed { least: speed, greatest: speed, error });
+        self.speed = Some(Speed {
+            least: so_far.least.min(speed),
+            greatest: so_far.greatest.max(speed),
+            error: so_far.error.max(error),
+        });
+    }
+
+    fn figures(&self) -> MoveFigures {
+        let info = &self.info;
+        let path = match &info.kind {
+            SegmentKind::Path(path) => Some(path),
+            _ => None,
+        };
+        let travels = path.is_some_and(|path| path.measure() == Measure::Length);
+        let is_arc = path.is_some_and(|path| matches!(path.curve(), Curve::Arc(_)));
+        let mm = |metres: f64| metres * 1e3;
+        MoveFigures {
+            segment: info.segment,
+            line: info.line,
+            kind: info.kind.name(),
+            arc: info.arc,
+            start_s: self.start,
+            end_s: self.end,
+            length_mm: path.map(|_| mm(info.length())),
+            speed_programmed_mm_s: info.speed.filter(|_| travels).map(mm),
+            speed_min_mm_s: self.speed.map(|speed| mm(speed.least)),
+            speed_max_mm_s: self.speed.map(|speed| mm(speed.greatest)),
+            speed_error_max: self.speed.map(|speed| speed.error),
+            straightness_max_mm: path.filter(|_| !is_arc).map(|_| mm(self.distance)),
+            arc_deviation_max_mm: path.filter(|_| is_arc).map(|_| mm(self.distance)),
+            orientation_deviation_max_rad: path.map(|_| self.angle),
+        }
+    }
+}
