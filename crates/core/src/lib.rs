@@ -5,6 +5,7 @@
 //! |---|---|
 //! | [`math`] | elementary functions with or without std |
 //! | [`geometry`] | poses, Euler angles, poses with their derivatives along a path |
+//! | [`otg`] | the trajectory generator: any state to any state in the least time, jerk-limited, N axes |
 //! | [`path`] | lines and arcs with orientation, as functions of the path coordinate |
 //!
 //! # Units and frames
@@ -23,4 +24,5 @@ extern crate std;
 
 pub mod geometry;
 pub mod math;
+pub mod otg;
 pub mod path;
