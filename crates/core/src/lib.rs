@@ -9,6 +9,7 @@
 //! | [`geometry`] | poses, Euler angles, poses with their derivatives along a path |
 //! | [`safety`] | the envelope every command must lie in, faults and stops |
 //! | [`kinematics`] | arm models: forward, inverse, Jacobian, joint derivatives along a path, singularities |
+//! | [`otg`] | the trajectory generator: any state to any state in the least time, jerk-limited, N axes |
 //! | [`path`] | lines and arcs with orientation, as functions of the path coordinate |
 //!
 //! # Units and frames
@@ -30,5 +31,6 @@ pub mod drive;
 pub mod geometry;
 pub mod kinematics;
 pub mod math;
+pub mod otg;
 pub mod path;
 pub mod safety;

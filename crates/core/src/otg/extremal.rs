@@ -1,0 +1,419 @@
+//! The extreme motions: how far an axis can get in a given time. See `docs/otg.md`, sections 2 and 3.
+//!
+//! Units: jerk limit 1. Of all motions from (v₀, a₀) to (v_f, a_f) within the limits that take the time T, the one that gets
+//! farthest raises the acceleration from a₀ to a peak x, lowers it to a valley −n and raises it again to a_f, with holds
+//! where x or n meets its limit, and with a cruise in the middle where the velocity meets its limit. That is one family with
+//! one parameter. Its mirror image gets least far.
+
+use crate::math::float::{cbrt, sqrt};
+
+/// A problem of third order with jerk limit 1: from (0, v₀, a₀) to (displacement, v_f, a_f).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Problem {
+    pub(super) displacement: f64,
+    pub(super) v0: f64,
+    pub(super) a0: f64,
+    pub(super) vf: f64,
+    pub(super) af: f64,
+    pub(super) v_max: f64,
+    pub(super) v_min: f64,
+    pub(super) a_max: f64,
+    pub(super) a_min: f64,
+}
+
+impl Problem {
+    /// The same problem with the axis turned round.
+    pub(super) fn mirror(&self) -> Self {
+        Self {
+            displacement: -self.displacement,
+            v0: -self.v0,
+            a0: -self.a0,
+            vf: -self.vf,
+            af: -self.af,
+            v_max: -self.v_min,
+            v_min: -self.v_max,
+            a_max: -self.a_min,
+            a_min: -self.a_max,
+        }
+    }
+}
+
+/// All motions that get farthest in their time, for one problem, with e as the parameter.
+///
+/// Symbols of docs/otg.md: `v_first` is v* and `v_last` is v⁺, the velocities where the first and the last rise of the acceleration, drawn
+/// out, pass through zero acceleration; `drop` is m, the magnitude of the lowest acceleration.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Family {
+    /// v* = v₀ − a₀²/2.
+    v_first: f64,
+    /// v⁺ = v_f − a_f²/2.
+    v_last: f64,
+    /// C = v⁺ − v* ≥ 0.
+    c: f64,
+    /// K, displacement of the outer rises beyond zero acceleration.
+    k: f64,
+    /// a_f − a₀.
+    a_change: f64,
+    /// Acceleration limits.
+    a_max: f64,
+    drop: f64,
+    v_max: f64,
+    /// Parameter at which the main arc starts.
+    start: f64,
+    /// Parameters between which the island lies, if there is one.
+    island: Option<(f64, f64)>,
+    /// The problem was reversed in time to have C ≥ 0: peak and valley change places.
+    reversed: bool,
+}
+
+/// One motion of the family.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Extremal {
+    /// The parameter: half the time that the valley would take, were it entered and left at zero acceleration.
+    pub(super) e: f64,
+    /// Peak acceleration.
+    pub(super) x: f64,
+    /// Valley acceleration, turned round; negative if the acceleration stays above zero.
+    pub(super) n: f64,
+    /// Duration of the peak from zero to zero acceleration.
+    t_peak: f64,
+    /// Velocity at the zero of the acceleration between peak and valley, drawn out if there is none.
+    pub(super) w: f64,
+    /// Duration of the cruise at w.
+    pub(super) cruise: f64,
+    /// Displacement.
+    pub(super) p: f64,
+    /// Duration.
+    pub(super) t: f64,
+    /// dp/dt, as the duration grows.
+    pub(super) slope: f64,
+}
+
+/// Peak, valley, holds and cruise of an extreme motion as they follow one another in time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shape {
+    pub(super) peak: f64,
+    pub(super) peak_hold: f64,
+    pub(super) cruise: f64,
+    pub(super) valley: f64,
+    pub(super) valley_hold: f64,
+}
+
+/// Newton's method doubles the number of good digits with each step, so that the step after one this small is exact.
+const LAST_STEP: f64 = 1e-9;
+
+/// Most steps of the root search. Newton steps converge within 20 where the displacement is convex, which is everywhere but on a hump; there the
+/// bracket is halved where a step leaves it: 60 halvings exhaust 64-bit floats.
+const MAX_STEPS: usize = 80;
+
+impl Family {
+    pub(super) fn new(problem: &Problem) -> Self {
+        let Problem { v0, a0, vf, af, v_max, a_max, a_min, .. } = *problem;
+        let c = (vf - v0) - 0.5 * (af - a0) * (af + a0);
+        // At C = 0 either order serves; the island, if there is one, shows where a₀ > 0.
+        if c < 0.0 || (c == 0.0 && a0 < 0.0) {
+            Self::ordered(vf, -af, v0, -a0, -c, -a_min, a_max, v_max, true)
+        } else {
+            Self::ordered(v0, a0, vf, af, c, a_max, -a_min, v_max, false)
+        }
+    }
+
+    #[allow(clippy::too_many_arguments)] // One flat list of numbers; a struct would only rename them.
+    #[inline]
+    fn ordered(
+        v0: f64,
+        a0: f64,
+        vf: f64,
+        af: f64,
+        c: f64,
+        a_max: f64,
+        drop: f64,
+        v_max: f64,
+        reversed: bool,
+    ) -> Self {
+        let v_first = v0 - 0.5 * a0 * a0;
+        let v_last = vf - 0.5 * af * af;
+        let k = af * (v_last + af * af / 6.0) - a0 * (v_first + a0 * a0 / 6.0);
+        let mut family = Self {
+            v_first,
+            v_last,
+            c,
+            k,
+            a_change: af - a0,
+            a_max,
+            drop,
+            v_max,
+            start: -af,
+            island: None,
+            reversed,
+        };
+        // The peak must reach a₀: x² = n² + C ≥ a₀².
+        let r_squared = a0 * a0 - c;
+        if a0 > 0.0 && r_squared > 0.0 {
+            let r = sqrt(r_squared);
+            if af >= r {
+                family.island = Some((-af, -r));
+            }
+            family.start = family.parameter(r_squared, r).max(-af);
+        }
+        family
+    }
+
+    /// The parameter at which the valley takes away the velocity y = (√y)².
+    #[inline]
+    fn parameter(&self, y: f64, root: f64) -> f64 {
+        if root <= self.drop { root } else { 0.5 * (self.drop + y / self.drop) }
+    }
+
+    /// The motion with parameter `e`, without regard to the velocity limit.
+    #[inline]
+    pub(super) fn at(&self, e: f64) -> Extremal {
+        let (n, y) = if e <= self.drop { (e, e * e) } else { (self.drop, self.drop * (2.0 * e - self.drop)) };
+        let gain = y + self.c;
+        let root = sqrt(gain);
+        let (x, t_peak) = if root <= self.a_max {
+            (root, 2.0 * root)
+        } else {
+            (self.a_max, self.a_max + gain / self.a_max)
+        };
+        let w = self.v_last + y;
+        Extremal {
+            e,
+            x,
+            n,
+            t_peak,
+            w,
+            cruise: 0.0,
+            p: 0.5 * (self.v_first + w) * t_peak + (w + self.v_last) * e + self.k,
+            t: t_peak + 2.0 * e + self.a_change,
+            slope: w + 0.5 * x * n,
+        }
+    }
+
+    /// Where the main arc starts: the shortest time from which on every time is possible.
+    #[inline]
+    pub(super) fn at_start(&self) -> Extremal {
+        self.at(self.start)
+    }
+
+    /// First and last motion of the island, an interval of possible times before the main arc.
+    pub(super) fn island(&self) -> Option<(Extremal, Extremal)> {
+        self.island.map(|(first, last)| (self.at(first), self.at(last)))
+    }
+
+    /// The motion whose peak velocity is the limit.
+    #[inline]
+    pub(super) fn at_velocity_limit(&self) -> Extremal {
+        let y = (self.v_max - self.v_last).max(0.0);
+        self.at(self.parameter(y, sqrt(y)).max(self.start))
+    }
+
+    /// The motion that takes the time `t`, which must be possible; within the velocity limit.
+    #[inline]
+    pub(super) fn at_duration(&self, t: f64, on_island: bool) -> Extremal {
+        let e = self.parameter_at_duration(t);
+        let extremal = match self.island {
+            Some((first, last)) if on_island => return self.at(e.clamp(first, last)),
+            _ => self.at(e.max(self.start)),
+        };
+        if extremal.w <= self.v_max {
+            return extremal;
+        }
+        let mut limited = self.at_velocity_limit();
+        limited.lengthen((t - limited.t).max(0.0));
+        limited
+    }
+
+    /// The closed-form inverse of the duration, piece by piece.
+    #[inline]
+    fn parameter_at_duration(&self, t: f64) -> f64 {
+        let t = t - self.a_change; // of peak and valley, both drawn out to zero acceleration
+        let s = 0.5 * t;
+        if s <= 0.0 {
+            return 0.0;
+        }
+        let (mut x, mut n) = (0.5 * (s + self.c / s), 0.5 * (s - self.c / s));
+        if x > self.a_max {
+            x = self.a_max;
+            n = sqrt((x * t - self.c).max(0.0)) - x;
+        }
+        if n <= self.drop {
+            return n;
+        }
+        let m = self.drop;
+        x = sqrt(m * t + self.c) - m;
+        let gain = if x > self.a_max {
+            (t - self.a_max - m + self.c / m) / (1.0 / self.a_max + 1.0 / m)
+        } else {
+            x * x
+        };
+        0.5 * (m + (gain - self.c) / m)
+    }
+
+    /// The first motion beyond `from` on the main arc that gets as far as `p`; `from` itself gets less far.
+    pub(super) fn first_reaching(&self, p: f64, from: &Extremal) -> Extremal {
+        if from.e < 0.0 && from.slope > 0.0 {
+            if let Some(extremal) = self.first_on_hump(p, from, 0.0) {
+                return extremal;
+            }
+        }
+        let mut highest = f64::INFINITY;
+        if self.v_max < f64::INFINITY {
+            let mut limited = self.at_velocity_limit();
+            if p >= limited.p {
+                limited.lengthen((p - limited.p) / self.v_max);
+                return limited;
+            }
+            highest = limited.e;
+        }
+        if let Some(saturated) = self.both_saturated(p, highest) {
+            return saturated;
+        }
+        self.solve(p, from.e, highest, self.bound(p).min(highest))
+    }
+
+    /// The first motion beyond `from` on the island that gets as far as `p`, if there is one; `from` itself gets less far.
+    pub(super) fn first_reaching_on_island(&self, p: f64, from: &Extremal) -> Option<Extremal> {
+        let (_, last) = self.island?;
+        if let Some(extremal) = self.first_on_hump(p, from, last) {
+            return Some(extremal);
+        }
+        let end = self.at(last);
+        (end.p >= p).then(|| self.solve(p, from.e, last, last))
+    }
+
+    /// Before the displacement falls and rises for good it may rise once, with the acceleration above zero throughout.
+    /// The first motion that gets as far as `p` on that rise, between `from` and the parameter `last` ≤ 0.
+    fn first_on_hump(&self, p: f64, from: &Extremal, last: f64) -> Option<Extremal> {
+        if from.slope <= 0.0 {
+            return None;
+        }
+        let top = self.hump(from.e, last)?;
+        (self.at(top).p >= p).then(|| self.solve(p, from.e, top, 0.5 * (from.e + top)))
+    }
+
+    /// Where between two parameters ≤ 0 the displacement has its first maximum.
+    fn hump(&self, first: f64, last: f64) -> Option<f64> {
+        let inside = |e: f64| (e > first && e <= last).then_some(e);
+        // Peak at its limit: slope n² + n a_max/2 + v⁺ = 0, the root from above to below zero.
+        let border = -sqrt((self.a_max * self.a_max - self.c).max(0.0));
+        if first < border {
+            let half = self.a_max / 4.0;
+            let discriminant = half * half - self.v_last;
+            if discriminant > 0.0 {
+                let n = -half - sqrt(discriminant);
+                if n <= border {
+                    if let Some(n) = inside(n) {
+                        return Some(n);
+                    }
+                }
+            }
+        }
+        // Neither at its limit: 3 s⁴ + 4 V s² + C² = 0 with s = x + n, the smaller root.
+        let v = self.v_first + self.v_last;
+        let discriminant = 4.0 * v * v - 3.0 * self.c * self.c;
+        if v >= 0.0 || discriminant <= 0.0 || self.c <= 0.0 {
+            return None;
+        }
+        let s = self.c / sqrt(sqrt(discriminant) - 2.0 * v);
+        inside(0.5 * (s - self.c / s))
+    }
+
+    /// Where peak and valley are both at their limits the displacement is quadratic in w.
+    fn both_saturated(&self, p: f64, highest: f64) -> Option<Extremal> {
+        let (a, m) = (self.a_max, self.drop);
+        let y = (m * m).max(a * a - self.c);
+        let e = 0.5 * (m + y / m);
+        if !(e < highest && e < f64::INFINITY) || self.at(e).p > p {
+            return None;
+        }
+        let quadratic = 0.5 * (1.0 / a + 1.0 / m);
+        let linear = 0.5 * (a + m);
+        let constant =
+            0.5 * (self.v_first * (a - self.v_first / a) + self.v_last * (m - self.v_last / m)) + self.k - p;
+        let w = -2.0 * constant / (linear + sqrt((linear * linear - 4.0 * quadratic * constant).max(0.0)));
+        Some(self.at((0.5 * (m + (w - self.v_last) / m)).clamp(e, highest)))
+    }
+
+    /// A parameter ≥ 0 beyond which the displacement is above `p`, within a small factor of the least.
+    ///
+    /// Without acceleration limits p = s³/4 + V s − C²/(4 s) + K with s = x + n ≥ √C; limits only add displacement once
+    /// the velocity is forward throughout.
+    #[inline]
+    fn bound(&self, p: f64) -> f64 {
+        let v = self.v_first + self.v_last;
+        let root_c = sqrt(self.c);
+        let q = p - self.k + 0.25 * self.c * root_c;
+        let mut s = if q > 0.0 { cbrt(4.0 * q) } else { 0.0 };
+        if v < 0.0 {
+            s += 2.0 * sqrt(-v);
+        } else if s * v > q {
+            s = q / v;
+        }
+        let mut y = 0.0;
+        if s > root_c {
+            let n = 0.5 * (s - self.c / s);
+            y = n * n;
+        }
+        let y = y.max(-self.v_first - self.v_last);
+        self.parameter(y, sqrt(y))
+    }
+
+    /// The rising root of the displacement between two parameters.
+    ///
+    /// From the right of the root Newton's method needs no bracket where the displacement is convex; the bracket is
+    /// for humps and rounding.
+    fn solve(&self, p: f64, mut low: f64, mut high: f64, start: f64) -> Extremal {
+        let mut now = self.at(start.max(low));
+        for _ in 0..MAX_STEPS {
+            let excess = now.p - p;
+            if excess > 0.0 {
+                high = now.e;
+            } else {
+                low = now.e;
+            }
+            // dp/de = slope · dt/de, and dt/de = 2 (1 + n/x).
+            let step = excess * now.x / (2.0 * now.slope * (now.x + now.n));
+            let mut next = now.e - step;
+            if !(next >= low && next <= high) {
+                next = if high < f64::INFINITY { 0.5 * (low + high) } else { 2.0 * now.e + now.x };
+            }
+            let moved = (next - now.e).abs();
+            now = self.at(next);
+            if moved <= LAST_STEP * now.x {
+                break;
+            }
+        }
+        now
+    }
+
+    /// Peak, valley and holds in the order of time.
+    pub(super) fn shape(&self, extremal: &Extremal) -> Shape {
+        let Extremal { x, n, .. } = *extremal;
+        let hold_x = (extremal.t_peak - 2.0 * x).max(0.0);
+        let hold_n = (2.0 * (extremal.e - n)).max(0.0);
+        let cruise = extremal.cruise;
+        if self.reversed {
+            Shape { peak: n, peak_hold: hold_n, cruise, valley: x, valley_hold: hold_x }
+        } else {
+            Shape { peak: x, peak_hold: hold_x, cruise, valley: n, valley_hold: hold_n }
+        }
+    }
+}
+
+impl Extremal {
+    /// Adds time at the peak velocity.
+    #[inline]
+    fn lengthen(&mut self, time: f64) {
+        self.cruise += time;
+        self.t += time;
+        self.p += self.w * time;
+        self.slope = self.w;
+    }
+
+    /// Whether the acceleration passes through zero between peak and valley, so that a cruise fits in.
+    #[inline]
+    pub(super) fn cruises(&self) -> bool {
+        self.n >= 0.0
+    }
+}

@@ -1,0 +1,205 @@
+//! The motion of one axis: phases of constant jerk, one after the other.
+
+use super::fixed_duration::Piece;
+use super::input::Control;
+
+/// Most phases of a profile: four that bring the axis inside its limits, and thirteen of the motion proper.
+pub const MAX_PHASES: usize = 17;
+
+/// A piece of motion at constant jerk: its duration, and the state where it starts.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Phase {
+    /// In seconds, > 0.
+    pub duration: f64,
+    /// Position at the start.
+    pub position: f64,
+    /// Velocity at the start.
+    pub velocity: f64,
+    /// Acceleration at the start.
+    pub acceleration: f64,
+    /// Jerk, constant over the phase.
+    pub jerk: f64,
+}
+
+impl Phase {
+    /// The motion a time after the start: position, velocity, acceleration and jerk.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, time: f64) -> Phase {
+        let Phase { position: p, velocity: v, acceleration: a, jerk: j, duration } = *self;
+        Phase {
+            duration: duration - time,
+            position: p + time * (v + time * (a / 2.0 + time * (j / 6.0))),
+            velocity: v + time * (a + time * (j / 2.0)),
+            acceleration: a + time * j,
+            jerk: j,
+        }
+    }
+}
+
+/// Position, velocity and acceleration of one axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Point {
+    pub(super) p: f64,
+    pub(super) v: f64,
+    pub(super) a: f64,
+}
+
+impl From<Point> for Phase {
+    fn from(Point { p, v, a }: Point) -> Self {
+        Self { duration: 0.0, position: p, velocity: v, acceleration: a, jerk: 0.0 }
+    }
+}
+
+/// What a profile's control is: the derivative of position that may jump.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Order {
+    /// Velocity: acceleration and jerk are unlimited.
+    First,
+    /// Acceleration: jerk is unlimited.
+    Second,
+    /// Jerk.
+    #[default]
+    Third,
+}
+
+/// The motion of one axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Profile {
+    phases: [Phase; MAX_PHASES],
+    len: usize,
+    /// How many of the phases, from the first, belong to the brake.
+    brake_len: usize,
+    /// Of all phases together.
+    duration: f64,
+    /// The state reached. Its acceleration goes on for ever.
+    end: Phase,
+    order: Order,
+}
+
+impl Profile {
+    /// No motion: the axis is at `end` from the start.
+    pub(super) fn ending_at(end: Point, order: Order) -> Self {
+        Self {
+            phases: [Phase::default(); MAX_PHASES],
+            len: 0,
+            brake_len: 0,
+            duration: 0.0,
+            end: end.into(),
+            order,
+        }
+    }
+
+    /// Sets the state reached.
+    pub(super) fn end_at(&mut self, end: Point) {
+        self.end = end.into();
+    }
+
+    /// Appends a piece whose jerk and acceleration are in units of `scale`, and moves `now` from its start to its end.
+    /// Pieces without duration are left out.
+    #[inline]
+    pub(super) fn push_forward(&mut self, piece: &Piece, scale: f64, now: &mut Point) {
+        let &Piece { duration: t, .. } = piece;
+        let (a, j) = (piece.acceleration * scale, piece.jerk * scale);
+        if t > 0.0 && self.len < MAX_PHASES {
+            self.phases[self.len] =
+                Phase { duration: t, position: now.p, velocity: now.v, acceleration: a, jerk: j };
+            self.len += 1;
+            self.duration += t;
+            now.p += t * (now.v + t * (0.5 * a + t * (j / 6.0)));
+            now.v += t * (a + 0.5 * t * j);
+            now.a = a + t * j;
+        }
+    }
+
+    /// Appends pieces that lead to the state `end`, reckoned back from there. Pieces have a duration.
+    #[inline]
+    pub(super) fn extend_backward(&mut self, pieces: &[Piece], scale: f64, end: Point) {
+        let first = self.len;
+        let mut now = end;
+        for (index, piece) in pieces.iter().enumerate().rev() {
+            let &Piece { duration: t, .. } = piece;
+            let (a, j) = (piece.acceleration * scale, piece.jerk * scale);
+            let v = now.v - t * (a + 0.5 * t * j);
+            now = Point { p: now.p - t * (v + t * (0.5 * a + t * (j / 6.0))), v, a };
+            if let Some(phase) = self.phases.get_mut(first + index) {
+                *phase = Phase { duration: t, position: now.p, velocity: now.v, acceleration: a, jerk: j };
+                self.len += 1;
+                self.duration += t;
+            }
+        }
+    }
+
+    /// Says that the phases so far are the brake.
+    pub(super) fn brake_is_complete(&mut self) {
+        self.brake_len = self.len;
+    }
+
+    /// This profile is s(t) along a line; the motion of an axis that has the share `direction` of it.
+    pub(super) fn along(&self, current: Point, target: Point, control: Control, direction: f64) -> Self {
+        let mut profile = *self;
+        // In velocity control s starts at rest, and the axis' own velocity goes on beside it.
+        let drift = if control == Control::Velocity { current.v } else { 0.0 };
+        let mut base = current.p;
+        for phase in &mut profile.phases[..self.len] {
+            phase.position = base + direction * phase.position;
+            phase.velocity = drift + direction * phase.velocity;
+            phase.acceleration *= direction;
+            phase.jerk *= direction;
+            base += drift * phase.duration;
+        }
+        profile.end = target.into();
+        if control == Control::Velocity {
+            profile.end.position = base + direction * self.end.position;
+        }
+        profile
+    }
+
+    /// All phases in order, those of the brake first.
+    ///
+    /// A profile has at most 7 phases after the brake where the axis reaches its own minimum time or cruises, and at most 13 where
+    /// a synchronized axis has to move between two extreme motions.
+    #[must_use]
+    pub fn phases(&self) -> &[Phase] {
+        &self.phases[..self.len]
+    }
+
+    /// The phases that bring the axis inside its limits; empty where it starts inside.
+    #[must_use]
+    pub fn brake(&self) -> &[Phase] {
+        &self.phases[..self.brake_len]
+    }
+
+    /// Seconds from start to target.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// Which derivative is the control, and may jump between phases.
+    #[must_use]
+    pub fn order(&self) -> Order {
+        self.order
+    }
+
+    /// The state reached at the end.
+    #[must_use]
+    pub fn end(&self) -> Phase {
+        self.end
+    }
+
+    /// Position, velocity, acceleration and jerk at a time; before the start those of the start, after the end those
+    /// of the target going on at its acceleration. (`duration` is what is left of the phase.)
+    #[inline]
+    #[must_use]
+    pub fn at(&self, time: f64) -> Phase {
+        let mut rest = if time > 0.0 { time } else { 0.0 };
+        for phase in &self.phases[..self.len] {
+            if rest < phase.duration {
+                return phase.at(rest);
+            }
+            rest -= phase.duration;
+        }
+        self.end.at(rest)
+    }
+}
