@@ -27,14 +27,23 @@ fn main() {
             Ok(timing) => {
                 println!(
                     "{index} {kind:?} L {:.4} v {:.4} {:?} T {:.4} pieces {} ratio {:.0} {}",
-                    job.path.length(), job.limits.speed, timing.kind(), timing.duration(), timing.pieces().len(),
-                    timing.duration() / took, if timing.kind() == TimingKind::Stretched { "STRETCHED" } else { "" }
+                    job.path.length(),
+                    job.limits.speed,
+                    timing.kind(),
+                    timing.duration(),
+                    timing.pieces().len(),
+                    timing.duration() / took,
+                    if timing.kind() == TimingKind::Stretched { "STRETCHED" } else { "" }
                 );
                 for s in timing.slowdowns() {
                     println!("   {s:.5?}");
                 }
             }
-            Err(error) => println!("{index} {kind:?} L {:.4} v {:.4} ERROR {error:?}", job.path.length(), job.limits.speed),
+            Err(error) => println!(
+                "{index} {kind:?} L {:.4} v {:.4} ERROR {error:?}",
+                job.path.length(),
+                job.limits.speed
+            ),
         }
     }
 }

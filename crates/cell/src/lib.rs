@@ -6,6 +6,7 @@
 //! | [`job`] | INFORM job files: reader, checks, interpreter |
 //! | [`plan`] | from steps to blocks; the speed along a path that keeps every joint limit |
 //! | [`record`] | what a run leaves behind: recording, figures, data for plots |
+//! | [`sim`] | simulated servo drives |
 
 pub mod cell;
 pub mod job;

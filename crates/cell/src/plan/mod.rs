@@ -1,3 +1,20 @@
 //! Planning: everything that is decided before a motion starts.
+//!
+//! ```text
+//! Step ─▶ Planner ─▶ goal (resolve) ─▶ Path ─▶ PathJoints (one branch) ─▶ timing ─▶ Block, Block, …
+//!                              └─▶ otg (MOVJ) ───────────────────────────────────▶ Block
+//! ```
 
+mod arm;
+mod error;
+mod joint_path;
+mod planner;
+mod resolve;
+mod speed;
 pub mod timing;
+mod tool_path;
+
+pub use arm::{Arm, ArmError, PlanningArm};
+pub use error::{Place, PlanError, Problem};
+pub use joint_path::{FollowError, PathJoints};
+pub use planner::{Planned, Planner};

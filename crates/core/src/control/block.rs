@@ -51,7 +51,10 @@ pub struct Block<const N: usize> {
 }
 
 /// How a block moves.
-#[expect(clippy::large_enum_variant, reason = "without a heap the larger one sets the size of the queue's entries")]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "without a heap the larger one sets the size of the queue's entries"
+)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Motion<const N: usize> {
     /// Each joint on its own trajectory.
@@ -81,7 +84,8 @@ impl PathMotion {
         if timing.is_empty() || timing.len() > BLOCK_PIECES {
             return None;
         }
-        let (mut pieces, mut starts, mut duration) = ([TimingPiece::default(); BLOCK_PIECES], [0.0; BLOCK_PIECES], 0.0);
+        let (mut pieces, mut starts, mut duration) =
+            ([TimingPiece::default(); BLOCK_PIECES], [0.0; BLOCK_PIECES], 0.0);
         for (k, piece) in timing.iter().enumerate() {
             (pieces[k], starts[k]) = (*piece, duration);
             duration += piece.duration;

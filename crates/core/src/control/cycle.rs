@@ -138,7 +138,9 @@ impl<const N: usize, K: Kinematics<N>> Cycle<N, K> {
                     self.restart();
                 }
             }
-            (Mode::Holding, Mode::Disabled) | (Mode::Running | Mode::Stopping, Mode::Standstill) => self.restart(),
+            (Mode::Holding, Mode::Disabled) | (Mode::Running | Mode::Stopping, Mode::Standstill) => {
+                self.restart()
+            }
             (_, Mode::Running) => self.on_path = true,
             _ => {}
         }

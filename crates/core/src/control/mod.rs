@@ -1,7 +1,29 @@
 //! The control cycle: modes, blocks of motion, the rate of programme time, and the four tiers that make a command.
+//!
+//! A planner fills a queue with [`Command`]s; [`Cycle::step`] takes them from there, once per period, and answers
+//! with a joint command. Time has two clocks: a block says where the arm is at each instant of *programme time* τ, and
+//! the cycle chooses the rate τ̇ in [0, 1]. Override, pause and controlled stop change the rate and never the path.
+//!
+//! | tier | does | fault |
+//! |---|---|---|
+//! | 1 feedback | holds the measured joints against the drives' model, filters them | following error, drive |
+//! | 2 target | lets programme time run on, within what the joints bear | queue ran empty |
+//! | 3 kinematics | joints and their derivatives at that instant | no inverse |
+//! | 4 safety | judges the command by its differences; stops the arm instead where it would leave the envelope | limits |
 
+mod block;
+mod cycle;
+mod feedback;
+mod halt;
 mod lookahead;
 mod mode;
+mod program;
 mod rate;
+mod telemetry;
 
+pub use block::{BLOCK_PIECES, Block, Command, Motion, PathMotion};
+pub use cycle::{Cycle, CycleConfig, CycleInput};
+pub use feedback::ServoModel;
 pub use mode::{Event, Mode};
+pub use program::CommandSource;
+pub use telemetry::{CycleOutput, NoClock, STAGES, StageClock, Status};

@@ -238,7 +238,11 @@ impl<const N: usize> Program<N> {
     }
 
     /// The joints' motion at a programme time; `None` where it is not known yet.
-    fn sample<K: Kinematics<N>>(&mut self, time: f64, kinematics: &K) -> Result<Option<JointMotion<N>>, Fault> {
+    fn sample<K: Kinematics<N>>(
+        &mut self,
+        time: f64,
+        kinematics: &K,
+    ) -> Result<Option<JointMotion<N>>, Fault> {
         let mut start = self.move_start;
         let mut rests = true;
         for k in 0..self.count {
@@ -271,7 +275,7 @@ fn joints_on<const N: usize, K: Kinematics<N>>(
         }
         Motion::Path(motion) => {
             let flange = motion.flange(time);
-            let inverse = |flange| {
+            let inverse = |flange: &crate::geometry::PoseJet| {
                 let q = kinematics.inverse_nearest(&flange.pose, seed)?;
                 kinematics.joint_jet(flange, &q)
             };

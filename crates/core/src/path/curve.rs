@@ -133,6 +133,19 @@ impl Arc {
         Ok(Self { centre: start + to_centre, radius, radial, tangent, angle })
     }
 
+    /// The same circle in the same sense, from `start` to `end` (points of it).
+    pub(super) fn between(&self, start: Vector3, end: Vector3) -> Result<Self, ArcError> {
+        if (end - start).norm() <= super::SAME_POSITION {
+            return Err(ArcError::Coincident(0, 2));
+        }
+        let (sin, cos) = sin_cos(self.coordinate(start) / self.radius);
+        let radial = self.radial * cos + self.tangent * sin;
+        let tangent = self.tangent * cos - self.radial * sin;
+        let turned = Self { radial, tangent, ..*self };
+        let angle = turned.coordinate(end) / self.radius;
+        Ok(Self { angle, ..turned })
+    }
+
     /// Arc length from the start to the point of the circle that lies in the direction of `point`, in [0, 2πr).
     pub(super) fn coordinate(&self, point: Vector3) -> f64 {
         let from_centre = point - self.centre;

@@ -65,6 +65,26 @@ impl Path {
         Ok(Self { curve: Curve::Arc(arc), orientation, length, measure: Measure::Length })
     }
 
+    /// Part of the circle through three poses: from `start` to `end`, which both lie on it. The orientation follows the
+    /// geodesic from start to end.
+    ///
+    /// # Errors
+    /// [`ArcError`] where the three positions do not determine a circle, or start and end agree.
+    pub fn arc_between(
+        first: &Pose,
+        second: &Pose,
+        third: &Pose,
+        start: &Pose,
+        end: &Pose,
+    ) -> Result<Self, ArcError> {
+        let position = |pose: &Pose| pose.translation.vector;
+        let circle = Arc::through(position(first), position(second), position(third))?;
+        let arc = circle.between(position(start), position(end))?;
+        let orientation = Orientation::Geodesic(Geodesic::new(start.rotation, end.rotation));
+        let length = arc.radius * arc.angle;
+        Ok(Self { curve: Curve::Arc(arc), orientation, length, measure: Measure::Length })
+    }
+
     /// Length of the path: metres or radians, as [`Path::measure`] says. Zero where nothing moves.
     #[must_use]
     pub fn length(&self) -> f64 {

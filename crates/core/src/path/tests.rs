@@ -98,3 +98,16 @@ fn three_points_that_give_no_circle_are_refused() {
     assert_eq!(Path::arc(&at(0.0, 0.0), &at(1.0, 0.0), &at(1.0, 0.0)), Err(ArcError::Coincident(1, 2)));
     assert_eq!(Path::arc(&at(0.0, 0.0), &at(1.0, 0.0), &at(2.0, 1e-7)), Err(ArcError::Collinear));
 }
+
+#[test]
+fn part_of_a_circle_keeps_its_sense() {
+    let at = |angle: f64| pose(angle.cos(), angle.sin(), 0.0, [0.0, 0.0, angle]);
+    let path = Path::arc_between(&at(0.0), &at(1.0), &at(2.0), &at(1.0), &at(2.0)).unwrap();
+    assert!((path.length() - 1.0).abs() < 1e-14);
+    for angle in [1.0, 1.3, 2.0] {
+        let error = path.pose(angle - 1.0).inverse() * at(angle);
+        assert!(error.translation.vector.norm() < 1e-14 && error.rotation.angle() < 1e-7);
+    }
+    let back = Path::arc_between(&at(2.0), &at(1.0), &at(0.0), &at(1.0), &at(0.0)).unwrap();
+    assert!((back.pose(0.5).translation.vector - at(0.5).translation.vector).norm() < 1e-14);
+}

@@ -225,7 +225,8 @@ impl InteriorPoint {
             site.spread(&inverse, &mut self.centring);
             site.spread(&second, &mut self.right);
         }
-        let reached = progress.gap + primal * by_slack + dual_length * by_dual + primal * dual_length * by_both;
+        let reached =
+            progress.gap + primal * by_slack + dual_length * by_dual + primal * dual_length * by_both;
         let share = (reached / progress.gap).clamp(0.0, 1.0);
         let product = share * share * share * progress.gap / count;
         self.set_direction(program, product);
@@ -284,7 +285,13 @@ fn frozen(program: &Program, index: usize, size: usize) -> bool {
 /// Gradient and diagonal curvature of the duration (in knots) at one site, in terms of β, h β′, h² β″: Simpson's rule.
 fn objective(program: &Program, site: usize, point: &Point, duration: &mut f64) -> ([f64; 3], [f64; 3]) {
     let last = program.sites() - 1;
-    let weight = if site == 0 || site == last { 1.0 } else if site % 2 == 1 { 4.0 } else { 2.0 } / 6.0;
+    let weight = if site == 0 || site == last {
+        1.0
+    } else if site % 2 == 1 {
+        4.0
+    } else {
+        2.0
+    } / 6.0;
     let [beta, slope, bend] = point.x;
     *duration += weight * point.root;
     let gradient = -0.5 * weight * point.root / beta;

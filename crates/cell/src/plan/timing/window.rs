@@ -93,13 +93,27 @@ impl Workshop {
             let stretch = load.stretch().max(1.0);
             if std::env::var("TIMING_TRACE").is_ok() {
                 let t: f64 = pieces.iter().map(|p| p.duration).sum();
-                eprintln!("  round {round} {outcome:?} its {} knots {} T {t:.5} stretch {stretch:.5} orders {:.4?}", self.solver.iterations, coordinate.knots(), load.orders());
+                eprintln!(
+                    "  round {round} {outcome:?} its {} knots {} T {t:.5} stretch {stretch:.5} orders {:.4?}",
+                    self.solver.iterations,
+                    coordinate.knots(),
+                    load.orders()
+                );
             }
             if std::env::var("TIMING_TRACE").as_deref() == Ok("2") && round == RETIMINGS {
                 for (i, l) in loads.iter().enumerate() {
                     if l.stretch() > 1.003 {
-                        let piece = &pieces[i/2];
-                        eprintln!("    piece {i} dt {:.5} s {:.6} v {:.4} j {:?} load j {:.3?} {:.3?} a {:.3?}", piece.duration, piece.position, piece.velocity, [piece.jerk, piece.at(piece.duration/2.0).jerk, piece.end().jerk], l.joints[2], l.path[2], l.joints[1]);
+                        let piece = &pieces[i / 2];
+                        eprintln!(
+                            "    piece {i} dt {:.5} s {:.6} v {:.4} j {:?} load j {:.3?} {:.3?} a {:.3?}",
+                            piece.duration,
+                            piece.position,
+                            piece.velocity,
+                            [piece.jerk, piece.at(piece.duration / 2.0).jerk, piece.end().jerk],
+                            l.joints[2],
+                            l.path[2],
+                            l.joints[1]
+                        );
                     }
                 }
             }

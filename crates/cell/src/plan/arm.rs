@@ -1,0 +1,146 @@
+//! The arm of a cell, ready for planning and running.
+
+use seamline::geometry::Pose;
+use seamline::kinematics::{
+    Configuration, InverseError, JointLimits, Kinematics, ModelError, OpwParameters, SphericalWristArm,
+    models,
+};
+use seamline::safety::MotionLimits;
+use thiserror::Error;
+
+use crate::cell::{BuiltInRobot, Cell, Robot, RobotModel};
+use crate::job;
+
+/// What planning asks of an arm beyond what the cycle does.
+pub trait PlanningArm<const N: usize>: Kinematics<N> + Clone {
+    /// The joints that reach a flange pose in a configuration.
+    ///
+    /// # Errors
+    /// [`InverseError`] where there are none within the limits.
+    fn in_configuration(
+        &self,
+        base_from_flange: &Pose,
+        configuration: &job::Configuration,
+        reference: &[f64; N],
+    ) -> Result<[f64; N], InverseError>;
+
+    /// The configuration of joint positions.
+    fn configuration(&self, q: &[f64; N]) -> job::Configuration;
+}
+
+impl PlanningArm<6> for SphericalWristArm {
+    fn in_configuration(
+        &self,
+        base_from_flange: &Pose,
+        configuration: &job::Configuration,
+        reference: &[f64; 6],
+    ) -> Result<[f64; 6], InverseError> {
+        let c = configuration;
+        let digits =
+            [c.no_flip, c.lower_arm, c.rear, c.r_beyond_180, c.t_beyond_180, c.s_beyond_180].map(u8::from);
+        match Configuration::from_rconf(digits) {
+            Some(configuration) => self.inverse_in_configuration(base_from_flange, &configuration, reference),
+            None => self.inverse_nearest(base_from_flange, reference),
+        }
+    }
+
+    fn configuration(&self, q: &[f64; 6]) -> job::Configuration {
+        let flags = SphericalWristArm::configuration(self, q).to_rconf().map(|digit| digit == 1);
+        job::Configuration::from_flags(&flags)
+    }
+}
+
+/// An arm with all that a cell says about its joints. SI units.
+#[derive(Debug, Clone)]
+pub struct Arm<const N: usize, K> {
+    /// The name that reports show.
+    pub name: String,
+    /// The names of the joints.
+    pub joint_names: Vec<String>,
+    /// The model, with the soft limits as its position limits.
+    pub kinematics: K,
+    /// Limits of the joints.
+    pub limits: MotionLimits<N>,
+    /// Encoder pulses per degree, with the axis's sign.
+    pub pulses_per_degree: [f64; N],
+    /// Permitted deviation of a joint from its drive's model.
+    pub following_error: [f64; N],
+    /// Where the simulated arm stands at first.
+    pub home: [f64; N],
+}
+
+/// Why a cell's arm cannot be planned for.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ArmError {
+    /// The model is known to the cell file and not to the planner.
+    #[error("robot.model: {model} is not supported by jobs yet; expected \"ar2010\", \"irb2400\" or \"opw\"")]
+    Unsupported {
+        /// The model.
+        model: &'static str,
+    },
+    /// The numbers are no arm.
+    #[error("robot: the dimensions are no arm: {0:?}")]
+    Model(ModelError),
+    /// The joints do not fit the model.
+    #[error("robot.joint: {found} joints, expected {expected}")]
+    Joints {
+        /// Joints of the cell.
+        found: usize,
+        /// Joints of the model.
+        expected: usize,
+    },
+}
+
+impl Arm<6, SphericalWristArm> {
+    /// The arm of a cell.
+    ///
+    /// # Errors
+    /// [`ArmError`] where the cell's robot is not a six-axis arm with spherical wrist.
+    pub fn from_cell(cell: &Cell) -> Result<Self, ArmError> {
+        let robot = &cell.robot;
+        let geometry = match &robot.model {
+            RobotModel::BuiltIn(BuiltInRobot::Ar2010) => *models::ar2010().geometry(),
+            RobotModel::BuiltIn(BuiltInRobot::Irb2400) => *models::irb2400().geometry(),
+            RobotModel::Opw(p) => {
+                let crate::cell::OpwParameters { a1, a2, b, c1, c2, c3, c4, offsets, signs } = *p;
+                OpwParameters { a1, a2, b, c1, c2, c3, c4, offsets, signs }.geometry()
+            }
+            RobotModel::BuiltIn(BuiltInRobot::Ur5e) => return Err(ArmError::Unsupported { model: "ur5e" }),
+            RobotModel::BuiltIn(BuiltInRobot::Scara600) => {
+                return Err(ArmError::Unsupported { model: "scara600" });
+            }
+            RobotModel::Dh(_) => return Err(ArmError::Unsupported { model: "dh" }),
+            RobotModel::Urdf(_) => return Err(ArmError::Unsupported { model: "urdf" }),
+        };
+        let limits = motion_limits(robot)?;
+        let model_limits = JointLimits::try_new(limits.position, limits.velocity).map_err(ArmError::Model)?;
+        let kinematics = SphericalWristArm::try_new(geometry, model_limits).map_err(ArmError::Model)?;
+        Ok(Self {
+            name: robot.name.clone(),
+            joint_names: robot.joints.iter().map(|joint| joint.name.clone()).collect(),
+            kinematics,
+            limits,
+            // Joints of an arm turn: the unit of `pulses_per_unit` is the radian.
+            pulses_per_degree: joints(robot, |joint| joint.pulses_per_unit.to_radians())?,
+            following_error: joints(robot, |joint| joint.following_error)?,
+            home: joints(robot, |joint| joint.home)?,
+        })
+    }
+}
+
+fn joints<T: Copy, const N: usize>(
+    robot: &Robot,
+    of: impl Fn(&crate::cell::Joint) -> T,
+) -> Result<[T; N], ArmError> {
+    let values: Vec<T> = robot.joints.iter().map(of).collect();
+    values.try_into().map_err(|_| ArmError::Joints { found: robot.joints.len(), expected: N })
+}
+
+fn motion_limits<const N: usize>(robot: &Robot) -> Result<MotionLimits<N>, ArmError> {
+    Ok(MotionLimits {
+        position: joints(robot, crate::cell::Joint::soft_limits)?,
+        velocity: joints(robot, |joint| joint.velocity)?,
+        acceleration: joints(robot, |joint| joint.acceleration)?,
+        jerk: joints(robot, |joint| joint.jerk)?,
+    })
+}

@@ -1,0 +1,190 @@
+//! What planning refuses, and where.
+
+use std::fmt;
+
+use seamline::kinematics::{InverseError, Singularity};
+use thiserror::Error;
+
+use crate::job::{Frame, Location};
+
+/// A step that cannot be planned.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{at}: {problem}")]
+pub struct PlanError {
+    /// The instruction.
+    pub at: Location,
+    /// What is wrong with it.
+    pub problem: Problem,
+}
+
+/// What is wrong with a step.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Problem {
+    /// A run does not execute this instruction.
+    #[error("`{text}` is refused: {reason}")]
+    Refused {
+        /// The instruction as written.
+        text: String,
+        /// Why.
+        reason: String,
+    },
+    /// The cell has no such tool.
+    #[error("tool {number} is not in the cell file; expected a [[tool]] table with this number")]
+    UnknownTool {
+        /// Its number.
+        number: u32,
+    },
+    /// The cell has no such frame.
+    #[error("user frame {number} is not in the cell file; expected a [[user_frame]] table with this number")]
+    UnknownFrame {
+        /// Its number.
+        number: u32,
+    },
+    /// A frame that positions cannot be taken in.
+    #[error("{name} is given in a frame that is not supported ({frame:?}); expected base, robot or user")]
+    UnsupportedFrame {
+        /// The position.
+        name: String,
+        /// Its frame.
+        frame: Frame,
+    },
+    /// The cell has no such arc condition.
+    #[error("{kind}#({number}) is not in the cell file; expected {table} with this number")]
+    UnknownCondition {
+        /// `ASF` or `AEF`.
+        kind: &'static str,
+        /// Its number.
+        number: u32,
+        /// The table's name.
+        table: &'static str,
+    },
+    /// A position has too few values.
+    #[error("{name} has {found} values, expected {expected} for this robot")]
+    PositionLength {
+        /// The position.
+        name: String,
+        /// Values found.
+        found: usize,
+        /// Joints of the robot.
+        expected: usize,
+    },
+    /// A position is of a kind that the robot's moves do not take.
+    #[error("{name} is a station position, expected a robot position")]
+    StationPosition {
+        /// The position.
+        name: String,
+    },
+    /// A position whose joints are out of range.
+    #[error("{name}: joint {joint} at {value_deg:.2} deg is outside {min_deg:.1} … {max_deg:.1} deg")]
+    JointRange {
+        /// The position.
+        name: String,
+        /// The joint's name.
+        joint: String,
+        /// Its position.
+        value_deg: f64,
+        /// Soft limit below.
+        min_deg: f64,
+        /// Soft limit above.
+        max_deg: f64,
+    },
+    /// A position that the arm does not reach.
+    #[error("{name} cannot be reached: {}", Reach(.error))]
+    Unreachable {
+        /// The position.
+        name: String,
+        /// Why.
+        error: InverseError,
+    },
+    /// A path that the arm cannot follow.
+    #[error("{place} the robot cannot go on: {reason}")]
+    Path {
+        /// Where along the move.
+        place: Place,
+        /// Why, with a remedy where there is one.
+        reason: String,
+    },
+    /// The move's speed is of a kind that does not fit.
+    #[error("{found} does not fit this move, expected {expected}")]
+    Speed {
+        /// The speed's tag.
+        found: &'static str,
+        /// What fits.
+        expected: &'static str,
+    },
+    /// The weld would be slower than programmed, and the cell refuses that.
+    #[error("{0}; the cell refuses a slowdown while the arc is on (arc.refuse_slowdown)")]
+    WeldSlowdown(String),
+    /// The generator gives no motion.
+    #[error("no motion to {name}: {reason}")]
+    Generator {
+        /// The position.
+        name: String,
+        /// Why.
+        reason: String,
+    },
+}
+
+/// A place along a move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// Path coordinate, and the path's whole length: mm, or degrees for a turn on the spot.
+    pub at: f64,
+    /// The whole.
+    pub of: f64,
+    /// The unit.
+    pub unit: &'static str,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "at {:.1} of {:.1} {}", self.at, self.of, self.unit)
+    }
+}
+
+/// An inverse error in words.
+pub(super) struct Reach<'a>(pub(super) &'a InverseError);
+
+impl fmt::Display for Reach<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mm = |metres: f64| metres * 1000.0;
+        match self.0 {
+            InverseError::NotFinite => write!(f, "a coordinate is not a number"),
+            InverseError::OutOfReach { distance, least, greatest } => write!(
+                f,
+                "the wrist centre is {:.1} mm from the shoulder, the arm reaches from {:.1} to {:.1} mm",
+                mm(*distance),
+                mm(*least),
+                mm(*greatest)
+            ),
+            InverseError::InsideLateralOffset { radius, offset } => {
+                write!(
+                    f,
+                    "the wrist centre is {:.1} mm from axis 1, expected at least {:.1} mm",
+                    mm(*radius),
+                    mm(*offset)
+                )
+            }
+            InverseError::OutOfOrientation { angle } => {
+                write!(f, "the orientation is {:.2} deg beyond what the arm can turn", angle.to_degrees())
+            }
+            InverseError::PositionLimit { axis, value, min, max } => write!(
+                f,
+                "joint {} would stand at {:.2} deg, outside {:.1} … {:.1} deg, in the configuration asked for",
+                axis + 1,
+                value.to_degrees(),
+                min.to_degrees(),
+                max.to_degrees()
+            ),
+            InverseError::Singular { singularity, .. } => {
+                let name = match singularity {
+                    Singularity::Wrist => "wrist (axes 4 and 6 in line)",
+                    Singularity::Elbow => "elbow (arm stretched or folded)",
+                    Singularity::Shoulder => "shoulder (wrist centre on axis 1)",
+                    Singularity::Rank => "arm (no motion in some direction)",
+                };
+                write!(f, "the path leads through a singularity of the {name}")
+            }
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! From a job's positions to joints and poses.
+
+use seamline::geometry::Pose;
+
+use super::arm::{Arm, PlanningArm};
+use super::error::Problem;
+use crate::cell::Cell;
+use crate::job::{Coordinates, Frame, Rectangular, Target, joints_from_pulses};
+
+/// A tool of the cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ToolPose {
+    pub(super) flange_from_tcp: Pose,
+}
+
+/// A target in the robot's own terms.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Goal<const N: usize> {
+    /// The tool centre point in the base frame.
+    pub(super) base_from_tcp: Pose,
+    pub(super) tool: ToolPose,
+    /// The joints that were taught: given as pulses, or by the configuration.
+    pub(super) joints: Result<[f64; N], seamline::kinematics::InverseError>,
+}
+
+impl ToolPose {
+    pub(super) fn of(cell: &Cell, number: u32) -> Result<Self, Problem> {
+        let tool = cell.tool(number).ok_or(Problem::UnknownTool { number })?;
+        Ok(Self { flange_from_tcp: tool.flange_from_tcp })
+    }
+}
+
+/// The target in robot terms; joints that the job leaves open lie near `reference`.
+pub(super) fn goal<const N: usize, K: PlanningArm<N>>(
+    target: &Target,
+    cell: &Cell,
+    arm: &Arm<N, K>,
+    reference: &[f64; N],
+) -> Result<Goal<N>, Problem> {
+    let name = || target.name.to_string();
+    let tool = ToolPose::of(cell, target.position.tool)?;
+    match &target.position.coordinates {
+        Coordinates::Pulses(pulses) => {
+            let joints = joints_from_pulses(pulses, &arm.pulses_per_degree)
+                .ok_or_else(|| Problem::PositionLength { name: name(), found: pulses.len(), expected: N })?;
+            check_range(&joints, arm, &name())?;
+            let base_from_tcp = arm.kinematics.forward(&joints) * tool.flange_from_tcp;
+            Ok(Goal { base_from_tcp, tool, joints: Ok(joints) })
+        }
+        Coordinates::Rectangular(position) => {
+            let base_from_tcp = base_from_frame(position, cell, &name())? * position.pose();
+            let base_from_flange = base_from_tcp * tool.flange_from_tcp.inverse();
+            let joints =
+                arm.kinematics.in_configuration(&base_from_flange, &position.configuration, reference);
+            Ok(Goal { base_from_tcp, tool, joints })
+        }
+        Coordinates::Angles(_) => Err(Problem::StationPosition { name: name() }),
+    }
+}
+
+fn base_from_frame(position: &Rectangular, cell: &Cell, name: &str) -> Result<Pose, Problem> {
+    match position.frame {
+        Frame::Base | Frame::Robot => Ok(Pose::identity()),
+        Frame::User(number) => {
+            let frame = cell.user_frame(number).ok_or(Problem::UnknownFrame { number })?;
+            Ok(frame.base_from_user)
+        }
+        frame => Err(Problem::UnsupportedFrame { name: name.into(), frame }),
+    }
+}
+
+/// The joints lie within the soft limits.
+fn check_range<const N: usize, K>(joints: &[f64; N], arm: &Arm<N, K>, name: &str) -> Result<(), Problem> {
+    for (joint, (value, (min, max))) in joints.iter().zip(arm.limits.position).enumerate() {
+        if !(min..=max).contains(value) {
+            return Err(Problem::JointRange {
+                name: name.into(),
+                joint: arm.joint_names[joint].clone(),
+                value_deg: value.to_degrees(),
+                min_deg: min.to_degrees(),
+                max_deg: max.to_degrees(),
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,50 @@
+//! The limits of a move along its path, from the move's speed and the cell's limits.
+
+use seamline::path::{Measure, Path};
+
+use super::error::Problem;
+use super::timing::PathLimits;
+use crate::cell::CartesianLimits;
+use crate::job::{Move, Speed};
+
+/// The tag that a speed is written with.
+pub(super) fn tag(speed: &Speed) -> &'static str {
+    match speed {
+        Speed::JointPercent(_) => "VJ=",
+        Speed::Linear { .. } => "V=",
+        Speed::Rotation { .. } => "VR=",
+        Speed::ExternalPercent(_) => "VE=",
+    }
+}
+
+/// Limits along the path coordinate: the move's speed, and no more than the cell permits to the tool centre point and
+/// to its turning. A turn on the spot that only has a speed in mm/s turns at the cell's speed of turning.
+pub(super) fn path_limits(path: &Path, r#move: &Move, cell: &CartesianLimits) -> Result<PathLimits, Problem> {
+    let turn = path.pose(0.0).rotation.angle_to(&path.pose(path.length()).rotation);
+    // Radians of turning per unit of the path coordinate.
+    let turning = match path.measure() {
+        Measure::Angle => 1.0,
+        Measure::Length => turn / path.length(),
+    };
+    let permitted = |length: f64, rotation: f64| match path.measure() {
+        Measure::Angle => rotation,
+        Measure::Length if turning > 0.0 => length.min(rotation / turning),
+        Measure::Length => length,
+    };
+    let asked = match (r#move.speed, path.measure()) {
+        (Speed::Linear { mm_s }, Measure::Length) => mm_s / 1000.0,
+        (Speed::Linear { .. }, Measure::Angle) => cell.rotation_speed,
+        (Speed::Rotation { deg_s }, Measure::Angle) => deg_s.to_radians(),
+        (Speed::Rotation { deg_s }, Measure::Length) if turning > 0.0 => deg_s.to_radians() / turning,
+        (speed, _) => {
+            return Err(Problem::Speed { found: tag(&speed), expected: "V=, or VR= where the tool turns" });
+        }
+    };
+    // The timing has one acceleration limit for both directions: the gentler of ACC and DEC.
+    let share = r#move.acceleration.min(r#move.deceleration);
+    Ok(PathLimits {
+        speed: asked.min(permitted(cell.speed, cell.rotation_speed)),
+        acceleration: share * permitted(cell.acceleration, cell.rotation_acceleration),
+        jerk: share * permitted(cell.jerk, cell.rotation_jerk),
+    })
+}
