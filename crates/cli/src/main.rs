@@ -1,6 +1,40 @@
-//! The program `seamline`.
+//! The program `seamline`: welding jobs in a simulated cell, and the parts of the motion library one by one.
+//!
+//! Exit status: 0 done, 1 failed (one message on stderr), 2 wrong usage.
 
-#[cfg_attr(not(test), expect(dead_code, reason = "the subcommand `run` is its only user"))]
-mod report;
+mod commands;
 
-fn main() {}
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Motion control for welding robots.
+#[derive(Debug, Parser)]
+#[command(name = "seamline", version, about, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Cell(commands::cell::Arguments),
+}
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Cell(arguments) => commands::cell::run(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            report(&error);
+            ExitCode::FAILURE
+        }
+    }
+}
+
+#[expect(clippy::print_stderr, reason = "the one place where a failure becomes a message")]
+fn report(error: &anyhow::Error) {
+    eprintln!("seamline: {error:#}");
+}

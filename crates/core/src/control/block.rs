@@ -8,6 +8,10 @@ use crate::path::{Path, PathState, TimingPiece};
 pub const BLOCK_PIECES: usize = 48;
 
 /// One entry of the queue.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "without a heap the largest one sets the size of the queue's entries"
+)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Command<const N: usize> {
     /// Move.
