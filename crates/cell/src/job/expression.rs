@@ -45,6 +45,18 @@ impl VariableKind {
         Self::NAMES.iter().find(|(_, kind)| *kind == self).map_or("", |(letters, _)| letters)
     }
 
+    /// Name, least and greatest value of a variable that holds a number; `None` for the others.
+    #[must_use]
+    pub fn range(self) -> Option<(&'static str, f64, f64)> {
+        match self {
+            Self::B => Some(("the value of a B variable", 0.0, 255.0)),
+            Self::I => Some(("the value of an I variable", -32_768.0, 32_767.0)),
+            Self::D => Some(("the value of a D variable", -2_147_483_648.0, 2_147_483_647.0)),
+            Self::R => Some(("the value of an R variable", -f64::from(f32::MAX), f64::from(f32::MAX))),
+            Self::S | Self::P | Self::Bp | Self::Ex | Self::Px => None,
+        }
+    }
+
     /// Whether it holds a position.
     #[must_use]
     pub fn is_position(self) -> bool {

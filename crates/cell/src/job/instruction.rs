@@ -1,7 +1,7 @@
 //! Instructions in typed form.
 
-use super::expression::{Expression, SignalReference, Variable};
-use super::position::{Frame, PositionKind};
+use super::expression::{Expression, Index, SignalReference, Variable};
+use super::position::PositionKind;
 
 /// One instruction of a program.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +46,21 @@ pub enum Interpolation {
     Incremental,
 }
 
+/// A coordinate system that an instruction names.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FrameTag {
+    /// `BF`.
+    Base,
+    /// `RF`.
+    Robot,
+    /// `TF`.
+    Tool,
+    /// `UF#(n)`.
+    User(Index),
+    /// `MTF`: the tool of the other robot.
+    MasterTool,
+}
+
 /// A position that a move or an operation refers to.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PositionReference {
@@ -86,6 +101,17 @@ impl SpeedKind {
             Self::External => "VE=",
         }
     }
+
+    /// Name, least and greatest value in the file's unit.
+    #[must_use]
+    pub fn range(self) -> (&'static str, f64, f64) {
+        match self {
+            Self::Joint => ("VJ (%)", 0.01, 100.0),
+            Self::Linear => ("V", 0.01, 10_000.0),
+            Self::Rotation => ("VR (deg/s)", 0.01, 1000.0),
+            Self::External => ("VE (%)", 0.01, 100.0),
+        }
+    }
 }
 
 /// A speed as written.
@@ -109,7 +135,7 @@ pub struct MoveInstruction {
     /// Base axis and station targets in the same move.
     pub external: Vec<PositionReference>,
     /// IMOV's coordinate system.
-    pub frame: Option<Frame>,
+    pub frame: Option<FrameTag>,
     /// The speed, if the line has one.
     pub speed: Option<SpeedTag>,
     /// `PL=`.
@@ -171,17 +197,6 @@ pub enum JumpTarget {
     },
     /// The start of another job.
     Job(JobReference),
-    /// Chosen at run time by a variable or an input group, as written.
-    Indirect(String),
-}
-
-/// What CALL calls.
-#[derive(Debug, Clone, PartialEq)]
-pub enum CallTarget {
-    /// A job by name.
-    Job(JobReference),
-    /// Chosen at run time by a variable or an input group, as written.
-    Indirect(String),
 }
 
 /// Program flow.
@@ -197,7 +212,7 @@ pub enum Flow {
     /// `CALL JOB:X ARGF1 IF …`.
     Call {
         /// Which job.
-        target: CallTarget,
+        target: JobReference,
         /// `ARGF…` or `(…, …)`.
         arguments: Vec<Expression>,
         /// `IF`.
@@ -401,7 +416,7 @@ pub enum Data {
         /// The position to be converted.
         source: Variable,
         /// The frame of the result.
-        frame: Frame,
+        frame: FrameTag,
         /// `TL#(n)`.
         tool: Option<Expression>,
     },

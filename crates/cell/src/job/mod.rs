@@ -16,28 +16,36 @@
 //! Units here are those of the file (mm, degrees, pulses, mm/s, percent), and every name says so. The conversions
 //! to SI are [`Rectangular::pose`], [`joints_from_pulses`] and [`Speed::metres_per_second`].
 
+mod blocks;
+mod check;
 mod condition;
 mod disposition;
 mod error;
 mod expression;
 mod instruction;
+mod interpreter;
+mod lexer;
+mod names;
+mod parser;
 mod position;
 mod program;
 mod set;
 mod step;
+mod walk;
 mod world;
 
 pub use condition::{Condition, Side};
-pub use disposition::{Disposition, disposition};
+pub use disposition::{Disposition, disposition, nearest_instruction};
 pub use error::{JobError, JobErrors, LoadError, Mistake, Nearest};
 pub use expression::{
     Expression, Index, Node, Operator, SignalKind, SignalReference, Variable, VariableKind,
 };
 pub use instruction::{
-    ArcTags, Arithmetic, Bitwise, CallTarget, Data, Flow, Function, Instruction, Interpolation, Io,
+    ArcTags, Arithmetic, Bitwise, Data, Flow, FrameTag, Function, Instruction, Interpolation, Io,
     JobReference, JumpTarget, MoveInstruction, OutputValue, PositionReference, SpeedKind, SpeedTag,
     WeaveTags, Weld,
 };
+pub use interpreter::{Interpreter, MAX_CALLS, MAX_IDLE};
 pub use position::{
     Configuration, Coordinates, Frame, JobPosition, PositionKind, PositionName, Rectangular,
     joints_from_pulses, pulses_from_joints,

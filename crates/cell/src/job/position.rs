@@ -169,6 +169,64 @@ impl Coordinates {
     }
 }
 
+impl Coordinates {
+    /// One element as SETE and GETE count it, from 1: pulses, 0.001 mm, 0.0001°. `None` where there is none.
+    #[must_use]
+    pub fn element(&self, number: usize) -> Option<f64> {
+        let index = number.checked_sub(1)?;
+        match self {
+            Self::Pulses(pulses) => pulses.get(index).map(|p| f64::from(*p)),
+            Self::Angles(angles) => angles.get(index).map(|a| (a * PER_DEGREE).round()),
+            Self::Rectangular(r) => match index {
+                0..=2 => r.position_mm.get(index).map(|mm| (mm * PER_MILLIMETRE).round()),
+                3..=5 => r.rotation_deg.get(index - 3).map(|deg| (deg * PER_DEGREE).round()),
+                6 => r.elbow_deg.map(|deg| (deg * PER_DEGREE).round()),
+                _ => None,
+            },
+        }
+    }
+
+    /// Sets one element, in the counts of [`element`](Self::element). False where there is none, or pulses leave
+    /// their 32 bits.
+    pub fn set_element(&mut self, number: usize, count: f64) -> bool {
+        let Some(index) = number.checked_sub(1) else { return false };
+        let slot = match self {
+            Self::Pulses(pulses) => {
+                let fits = (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&count);
+                let Some(slot) = pulses.get_mut(index).filter(|_| fits) else { return false };
+                // In range: the cast only drops a fraction.
+                *slot = count.round() as i32;
+                return true;
+            }
+            Self::Angles(angles) => angles.get_mut(index).map(|slot| (slot, PER_DEGREE)),
+            Self::Rectangular(r) => match index {
+                0..=2 => r.position_mm.get_mut(index).map(|slot| (slot, PER_MILLIMETRE)),
+                3..=5 => r.rotation_deg.get_mut(index - 3).map(|slot| (slot, PER_DEGREE)),
+                6 => r.elbow_deg.as_mut().map(|slot| (slot, PER_DEGREE)),
+                _ => None,
+            },
+        };
+        let Some((slot, per_unit)) = slot else { return false };
+        *slot = count / per_unit;
+        true
+    }
+
+    /// How many elements there are.
+    #[must_use]
+    pub fn elements(&self) -> usize {
+        match self {
+            Self::Pulses(pulses) => pulses.len(),
+            Self::Angles(angles) => angles.len(),
+            Self::Rectangular(r) => 6 + usize::from(r.elbow_deg.is_some()),
+        }
+    }
+}
+
+/// Counts of SETE and GETE in a millimetre.
+const PER_MILLIMETRE: f64 = 1000.0;
+/// Counts of SETE and GETE in a degree (from the DX100 on).
+const PER_DEGREE: f64 = 10_000.0;
+
 /// One position of a job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JobPosition {

@@ -88,8 +88,8 @@ pub enum Action {
     Unsupported {
         /// The instruction as written.
         text: String,
-        /// Why.
-        reason: &'static str,
+        /// Why, and the nearest known instruction where the word is not known.
+        reason: String,
     },
     /// The program's end.
     End,
@@ -129,8 +129,8 @@ pub enum MovePath {
     Spline,
     /// IMOV: a line by an increment in a frame.
     Incremental {
-        /// The increment's frame.
-        frame: Frame,
+        /// The increment's frame; `None` where the increment counts pulses, axis by axis.
+        frame: Option<Frame>,
     },
 }
 
