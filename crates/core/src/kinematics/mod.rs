@@ -8,16 +8,25 @@
 //! |---|---|
 //! | [`SphericalWristArm`] | closed form, up to 8 branches |
 
+mod axes;
+mod chain;
+mod differential;
 mod error;
 mod limits;
 pub mod models;
+mod singular_values;
 mod spherical_wrist;
 
+pub use axes::{Jacobian, JointAxes, JointAxis};
+pub use chain::{
+    DhConvention, DhRow, JointDescription, JointKind, NumericSolution, SerialChain, SolverSettings,
+};
 pub use error::{InverseError, ModelError, Singularity};
 pub use limits::JointLimits;
+pub use singular_values::SingularValues;
 pub use spherical_wrist::{
-    Configuration, Elbow, OpwParameters, Posture, Shoulder, Solution, Solutions, SphericalWristArm,
-    SphericalWristGeometry, Wrist,
+    Configuration, Elbow, OpwParameters, Posture, Shoulder, SingularityDistances, Solution, Solutions,
+    SphericalWristArm, SphericalWristGeometry, Wrist,
 };
 
 use crate::geometry::{Pose, PoseJet};
@@ -47,6 +56,9 @@ impl<const N: usize> JointJet<N> {
 pub trait Kinematics<const N: usize> {
     /// The flange's pose in the base frame at joint positions `q`.
     fn forward(&self, q: &[f64; N]) -> Pose;
+
+    /// The joints' axes and the flange at joint positions `q`: the Jacobian and its derivatives follow from them.
+    fn axes(&self, q: &[f64; N]) -> JointAxes<N>;
 
     /// The joint positions within the limits that reach the pose and lie nearest to `seed` (least sum of squared
     /// differences), full turns included.

@@ -2,7 +2,10 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use super::{JointLimits, OpwParameters, SphericalWristArm, SphericalWristGeometry};
+use super::{
+    DhConvention, DhRow, JointKind, JointLimits, OpwParameters, SerialChain, SphericalWristArm,
+    SphericalWristGeometry,
+};
 use crate::geometry::{Pose, Rotation};
 
 /// A Yaskawa AR2010/MA2010-class arc-welding arm: reach 2.01 m, joints S, L, U, R, B, T.
@@ -48,6 +51,22 @@ pub fn irb2400() -> SphericalWristArm {
         [150.0, 150.0, 150.0, 360.0, 360.0, 450.0],
     );
     SphericalWristArm::of_valid(parameters.geometry(), limits)
+}
+
+/// A Universal Robots UR5e: no spherical wrist; DH parameters as the maker publishes them.
+#[must_use]
+pub fn ur5e() -> SerialChain<6> {
+    let row = |a, alpha, d| DhRow { a, alpha, d, theta: 0.0, kind: JointKind::Revolute };
+    let rows = [
+        row(0.0, FRAC_PI_2, 0.1625),
+        row(-0.425, 0.0, 0.0),
+        row(-0.3922, 0.0, 0.0),
+        row(0.0, FRAC_PI_2, 0.1333),
+        row(0.0, -FRAC_PI_2, 0.0997),
+        row(0.0, 0.0, 0.0996),
+    ];
+    let limits = limits_from_degrees([(-360.0, 360.0); 6], [180.0; 6]);
+    SerialChain::from_dh(&rows, DhConvention::Standard, &Pose::identity(), &Pose::identity(), limits).unwrap()
 }
 
 fn half_turn_about_z() -> Rotation {

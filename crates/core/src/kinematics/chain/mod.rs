@@ -1,0 +1,188 @@
+//! General serial chains of turning and sliding joints.
+//!
+//! Forward kinematics goes from link to link; the inverse is numeric ([`solver`]), or in closed form where
+//! [`structure`] finds a spherical wrist.
+
+mod description;
+mod solver;
+
+pub use description::{DhConvention, DhRow, JointDescription, JointKind};
+pub use solver::{NumericSolution, SolverSettings};
+
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
+
+use super::differential::inverse_jet;
+use super::{InverseError, JointAxes, JointAxis, JointJet, JointLimits, Kinematics, ModelError};
+use crate::geometry::{Pose, PoseJet, Rotation, Vector3};
+use crate::math::float::sin_cos;
+
+/// A serial chain of N joints.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SerialChain<const N: usize> {
+    links: [Link; N],
+    /// From the last joint's frame.
+    flange: Frame,
+    limits: JointLimits<N>,
+}
+
+/// A joint with what lies before it. Its axis is the z axis of its frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Link {
+    parent_from_joint: Frame,
+    prismatic: bool,
+}
+
+/// A rigid transformation as a matrix: columns are at hand, and turning about z touches two of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Frame {
+    rotation: Matrix3<f64>,
+    position: Vector3,
+}
+
+impl Frame {
+    fn of(pose: &Pose) -> Self {
+        Self { rotation: pose.rotation.to_rotation_matrix().into_inner(), position: pose.translation.vector }
+    }
+
+    #[inline]
+    fn then(&self, next: &Self) -> Self {
+        Self {
+            rotation: self.rotation * next.rotation,
+            position: self.rotation * next.position + self.position,
+        }
+    }
+
+    #[inline]
+    fn turned_about_z(&self, angle: f64) -> Self {
+        let (sin, cos) = sin_cos(angle);
+        let (x, y, z) = (self.rotation.column(0), self.rotation.column(1), self.rotation.column(2));
+        let rotation = Matrix3::from_columns(&[x * cos + y * sin, y * cos - x * sin, z.into_owned()]);
+        Self { rotation, position: self.position }
+    }
+
+    #[inline]
+    fn pose(&self) -> Pose {
+        let rotation = Rotation3::from_matrix_unchecked(self.rotation);
+        Pose::from_parts(self.position.into(), UnitQuaternion::from_rotation_matrix(&rotation))
+    }
+}
+
+impl<const N: usize> SerialChain<N> {
+    /// A chain from its joints, base to flange, as URDF describes them.
+    ///
+    /// # Errors
+    /// [`ModelError`] for a number that is not finite or an axis without direction.
+    pub fn try_new(
+        joints: &[JointDescription; N],
+        last_from_flange: &Pose,
+        limits: JointLimits<N>,
+    ) -> Result<Self, ModelError> {
+        let mut links = [Link { parent_from_joint: Frame::of(&Pose::identity()), prismatic: false }; N];
+        // Joint frames are turned so that their z axis is the joint's axis.
+        let mut described_from_turned = Pose::identity();
+        for (axis, (link, joint)) in links.iter_mut().zip(joints).enumerate() {
+            let turn = joint.z_onto_axis(axis)?;
+            let parent_from_joint = described_from_turned.inverse() * joint.parent_from_joint * turn;
+            *link = Link {
+                parent_from_joint: Frame::of(&parent_from_joint),
+                prismatic: joint.kind == JointKind::Prismatic,
+            };
+            described_from_turned = turn;
+        }
+        let flange = Frame::of(&(described_from_turned.inverse() * last_from_flange));
+        let numbers = flange.rotation.sum() + flange.position.sum();
+        if numbers.is_finite() { Ok(Self { links, flange, limits }) } else { Err(ModelError::NotFinite) }
+    }
+
+    /// A chain from its axes at zero (a product of exponentials).
+    ///
+    /// # Errors
+    /// [`ModelError`] for a number that is not finite or an axis without direction.
+    pub fn from_axes(at_zero: &JointAxes<N>, limits: JointLimits<N>) -> Result<Self, ModelError> {
+        let mut last = Vector3::zeros();
+        let joints = at_zero.axes.map(|axis| {
+            let parent_from_joint = Pose::from_parts((axis.point - last).into(), Rotation::identity());
+            last = axis.point;
+            let kind = if axis.prismatic { JointKind::Prismatic } else { JointKind::Revolute };
+            JointDescription { parent_from_joint, axis: axis.direction, kind }
+        });
+        let base_from_last = Pose::from_parts(last.into(), Rotation::identity());
+        Self::try_new(&joints, &(base_from_last.inverse() * at_zero.base_from_flange), limits)
+    }
+
+    /// A chain from a table of Denavit–Hartenberg parameters.
+    ///
+    /// # Errors
+    /// [`ModelError::NotFinite`].
+    pub fn from_dh(
+        rows: &[DhRow; N],
+        convention: DhConvention,
+        base_from_first: &Pose,
+        last_from_flange: &Pose,
+        limits: JointLimits<N>,
+    ) -> Result<Self, ModelError> {
+        let (joints, flange) = description::from_dh(rows, convention, base_from_first, last_from_flange);
+        Self::try_new(&joints, &flange, limits)
+    }
+
+    /// The chain's limits.
+    #[must_use]
+    pub fn limits(&self) -> &JointLimits<N> {
+        &self.limits
+    }
+
+    /// The last joint's frame turned to `q`, and each joint's frame passed on the way.
+    #[inline]
+    fn walk(&self, q: &[f64; N], mut passed: impl FnMut(usize, &Frame)) -> Frame {
+        let mut frame = Frame { rotation: Matrix3::identity(), position: Vector3::zeros() };
+        for (i, (link, &position)) in self.links.iter().zip(q).enumerate() {
+            let joint = frame.then(&link.parent_from_joint);
+            passed(i, &joint);
+            frame = if link.prismatic {
+                Frame { position: joint.position + joint.rotation.column(2) * position, ..joint }
+            } else {
+                joint.turned_about_z(position)
+            };
+        }
+        frame.then(&self.flange)
+    }
+}
+
+impl<const N: usize> Kinematics<N> for SerialChain<N> {
+    #[inline]
+    fn forward(&self, q: &[f64; N]) -> Pose {
+        self.walk(q, |_, _| ()).pose()
+    }
+
+    #[inline]
+    fn axes(&self, q: &[f64; N]) -> JointAxes<N> {
+        let nothing = JointAxis { direction: Vector3::zeros(), point: Vector3::zeros(), prismatic: false };
+        let mut axes = [nothing; N];
+        let flange = self.walk(q, |i, joint| {
+            axes[i] = JointAxis {
+                direction: joint.rotation.column(2).into_owned(),
+                point: joint.position,
+                prismatic: self.links[i].prismatic,
+            };
+        });
+        JointAxes { axes, base_from_flange: flange.pose() }
+    }
+
+    /// The numeric inverse from the seed, and from other starts where that fails ([`SerialChain::solve`] with the
+    /// default settings): the solution that the seed leads to, usually the nearest.
+    fn inverse_nearest(&self, base_from_flange: &Pose, seed: &[f64; N]) -> Result<[f64; N], InverseError> {
+        Ok(self.solve(base_from_flange, seed, &SolverSettings::default())?.q)
+    }
+
+    fn joint_jet(&self, base_from_flange: &PoseJet, q: &[f64; N]) -> Result<JointJet<N>, InverseError> {
+        inverse_jet(&self.axes(q), base_from_flange, q)
+    }
+
+    fn position_limits(&self) -> &[(f64, f64); N] {
+        self.limits.position()
+    }
+
+    fn velocity_limits(&self) -> &[f64; N] {
+        self.limits.velocity()
+    }
+}

@@ -1,0 +1,246 @@
+//! Numeric inverse: damped Newton steps that turn into Taylor steps near the solution.
+//!
+//! Far away each step is Levenberg–Marquardt's with the damping of Sugihara, *Solvability-Unconcerned Inverse Kinematics
+//! by the Levenberg–Marquardt Method* (IEEE T-RO 27, 2011): λ = c·|e|², so that it vanishes at the solution. Near it
+//! the joints' first three derivatives along the straight way to the target are a Taylor polynomial, whose error is of
+//! fourth order: a seed within 0.05 rad needs two steps. A start that does not get anywhere is given up for another one,
+//! taken from a fixed sequence that fills the joint range evenly: the same question has the same answer on every run.
+
+use nalgebra::{SMatrix, Vector6};
+
+use super::SerialChain;
+use crate::geometry::{Pose, Vector3};
+use crate::kinematics::limits::nearest_turn_within;
+use crate::kinematics::{InverseError, JointAxes, JointJet, Kinematics};
+use crate::math::float::{atan2, floor, powf};
+use crate::math::linear::Cholesky;
+
+/// When the solver is content, and when it gives up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SolverSettings {
+    /// Distance in metres.
+    pub position_tolerance: f64,
+    /// Angle in radians.
+    pub rotation_tolerance: f64,
+    /// Iterations from one start.
+    pub iterations_per_start: usize,
+    /// Starts: the seed, then others.
+    pub starts: usize,
+}
+
+impl Default for SolverSettings {
+    /// 1e-6 m, 1e-6 rad; 50 iterations from each of 40 starts.
+    fn default() -> Self {
+        Self { position_tolerance: 1e-6, rotation_tolerance: 1e-6, iterations_per_start: 50, starts: 40 }
+    }
+}
+
+/// What the solver found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NumericSolution<const N: usize> {
+    /// Joint positions, within the limits, in the turn nearest to the seed.
+    pub q: [f64; N],
+    /// Iterations taken, over all starts.
+    pub iterations: usize,
+    /// Starts taken.
+    pub starts: usize,
+    /// Distance left, in metres.
+    pub position_residual: f64,
+    /// Angle left, in radians.
+    pub rotation_residual: f64,
+}
+
+/// Damping λ = this · |e|².
+const DAMPING: f64 = 0.3;
+/// Steps longer than this in any joint (radians) are shortened to it.
+const LONGEST_STEP: f64 = 1.0;
+/// Taylor steps are taken where the undamped step stays below this in every joint.
+const TAYLOR_STEP: f64 = 0.35;
+/// A start is given up if this many iterations have not halved the error.
+const PATIENCE: usize = 8;
+
+/// Where one start has got to.
+struct Descent<const N: usize> {
+    q: [f64; N],
+    iterations: usize,
+    position_residual: f64,
+    rotation_residual: f64,
+    converged: bool,
+}
+
+impl<const N: usize> SerialChain<N> {
+    /// Joint positions for a pose, within the limits.
+    ///
+    /// # Errors
+    /// [`InverseError::NotConverged`]; [`InverseError::PositionLimit`] where solutions were found, all of them outside
+    /// the limits; [`InverseError::NotFinite`].
+    ///
+    /// Cost: at most `starts · iterations_per_start` iterations, each of one pass through the chain and one N × N
+    /// factorization.
+    pub fn solve(
+        &self,
+        base_from_flange: &Pose,
+        seed: &[f64; N],
+        settings: &SolverSettings,
+    ) -> Result<NumericSolution<N>, InverseError> {
+        let sum = base_from_flange.translation.vector.sum()
+            + base_from_flange.rotation.coords.sum()
+            + seed.iter().sum::<f64>();
+        if !sum.is_finite() {
+            return Err(InverseError::NotFinite);
+        }
+        let mut iterations = 0;
+        let mut best: Option<Descent<N>> = None;
+        let mut outside = None;
+        for start in 0..settings.starts {
+            let from = if start == 0 { *seed } else { self.start(start) };
+            let descent = self.descend(base_from_flange, from, settings);
+            iterations += descent.iterations;
+            if descent.converged {
+                match self.turned_within_limits(&descent.q, seed) {
+                    Ok(q) => {
+                        let Descent { position_residual, rotation_residual, .. } = descent;
+                        let starts = start + 1;
+                        return Ok(NumericSolution {
+                            q,
+                            iterations,
+                            starts,
+                            position_residual,
+                            rotation_residual,
+                        });
+                    }
+                    Err(error) => outside = outside.or(Some(error)),
+                }
+            }
+            let error = |d: &Descent<N>| d.position_residual + d.rotation_residual;
+            if best.as_ref().is_none_or(|best| error(&descent) < error(best)) {
+                best = Some(descent);
+            }
+        }
+        let (position_residual, rotation_residual) = best
+            .map_or((f64::INFINITY, f64::INFINITY), |best| (best.position_residual, best.rotation_residual));
+        let not_converged = InverseError::NotConverged { iterations, position_residual, rotation_residual };
+        Err(outside.unwrap_or(not_converged))
+    }
+
+    /// From one start as far as it leads.
+    fn descend(&self, target: &Pose, from: [f64; N], settings: &SolverSettings) -> Descent<N> {
+        let mut q = from;
+        let mut axes = self.axes(&q);
+        let mut twist = twist_to(&axes.base_from_flange, target);
+        let (mut milestone, mut since_milestone) = (twist.norm(), 0);
+        let mut iterations = 0;
+        loop {
+            let position_residual = twist.fixed_rows::<3>(0).norm();
+            let rotation_residual = twist.fixed_rows::<3>(3).norm();
+            let converged = position_residual <= settings.position_tolerance
+                && rotation_residual <= settings.rotation_tolerance;
+            if converged || iterations == settings.iterations_per_start || since_milestone == PATIENCE {
+                return Descent { q, iterations, position_residual, rotation_residual, converged };
+            }
+            let step = step(&axes, &twist);
+            for (position, step) in q.iter_mut().zip(step) {
+                *position += step;
+            }
+            iterations += 1;
+            axes = self.axes(&q);
+            twist = twist_to(&axes.base_from_flange, target);
+            since_milestone += 1;
+            if twist.norm() < 0.5 * milestone {
+                (milestone, since_milestone) = (twist.norm(), 0);
+            }
+        }
+    }
+
+    /// The k-th start: an additive recurrence with the powers of the generalized golden ratio (the root of
+    /// x^(N+1) = x + 1), which fills the joint range evenly for any number of points.
+    fn start(&self, k: usize) -> [f64; N] {
+        let mut ratio = 1.5;
+        for _ in 0..30 {
+            ratio = powf(1.0 + ratio, 1.0 / (N as f64 + 1.0));
+        }
+        let mut increment = 1.0;
+        core::array::from_fn(|axis| {
+            increment /= ratio;
+            let x = 0.5 + k as f64 * increment;
+            let (min, max) = self.limits.position()[axis];
+            let (min, max) = (min.max(-core::f64::consts::PI), max.min(core::f64::consts::PI));
+            min + (max - min) * (x - floor(x))
+        })
+    }
+
+    /// Turning joints in the turn nearest to the reference, all within the limits.
+    fn turned_within_limits(&self, q: &[f64; N], reference: &[f64; N]) -> Result<[f64; N], InverseError> {
+        let mut turned = *q;
+        for (axis, position) in turned.iter_mut().enumerate() {
+            let (min, max) = self.limits.position()[axis];
+            let inside = if self.links[axis].prismatic {
+                (*position >= min && *position <= max).then_some(*position)
+            } else {
+                nearest_turn_within(*position, reference[axis], (min, max))
+            };
+            *position = inside.ok_or(InverseError::PositionLimit { axis, value: *position, min, max })?;
+        }
+        Ok(turned)
+    }
+}
+
+/// The straight way from one pose to another: translation and rotation vector, in the base frame.
+#[inline]
+fn twist_to(from: &Pose, to: &Pose) -> Vector6<f64> {
+    let linear = to.translation.vector - from.translation.vector;
+    let turn = to.rotation * from.rotation.inverse();
+    let (imaginary, real) = (turn.imag(), turn.w);
+    let sine = imaginary.norm();
+    // The shorter way round: q and −q are one rotation.
+    let angle = if real >= 0.0 { 2.0 * atan2(sine, real) } else { -2.0 * atan2(sine, -real) };
+    let scale = if sine > 0.0 { angle / sine } else { 2.0 };
+    let angular: Vector3 = imaginary * scale;
+    Vector6::new(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
+}
+
+/// The next step of the joints towards a flange displaced by `twist`.
+#[inline]
+fn step<const N: usize>(axes: &JointAxes<N>, twist: &Vector6<f64>) -> [f64; N] {
+    let jacobian = axes.jacobian();
+    let normal: SMatrix<f64, N, N> = jacobian.tr_mul(&jacobian);
+    let towards = |b: &Vector6<f64>| -> [f64; N] { jacobian.tr_mul(b).into() };
+    if twist.norm() < 1.0
+        && let Some(factor) = Cholesky::new(&normal)
+    {
+        let velocity = factor.solve(&towards(twist));
+        if largest(&velocity) <= TAYLOR_STEP {
+            return taylor_step(axes, velocity, |b| factor.solve(&towards(b)));
+        }
+    }
+    let damped = normal + SMatrix::identity() * (DAMPING * twist.norm_squared());
+    // Not positive definite: all joints are at rest for rounding, and there is no step.
+    let Some(factor) = Cholesky::new(&damped) else { return [0.0; N] };
+    let step = factor.solve(&towards(twist));
+    let scale = (LONGEST_STEP / largest(&step)).min(1.0);
+    step.map(|s| s * scale)
+}
+
+/// q′ + ½ q″ + ⅙ q‴, the joints' derivatives along the straight way to the target.
+#[inline]
+fn taylor_step<const N: usize>(
+    axes: &JointAxes<N>,
+    velocity: [f64; N],
+    solve: impl Fn(&Vector6<f64>) -> [f64; N],
+) -> [f64; N] {
+    let stacked = |linear: Vector3, angular: Vector3| {
+        Vector6::new(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
+    };
+    let mut jet = JointJet { velocity, ..JointJet::at_rest([0.0; N]) };
+    let bias = axes.forward_jet(&jet);
+    jet.acceleration = solve(&-stacked(bias.linear[1], bias.angular[1]));
+    let bias = axes.forward_jet(&jet);
+    jet.jerk = solve(&-stacked(bias.linear[2], bias.angular[2]));
+    core::array::from_fn(|i| jet.velocity[i] + jet.acceleration[i] / 2.0 + jet.jerk[i] / 6.0)
+}
+
+/// The largest magnitude.
+#[inline]
+fn largest<const N: usize>(values: &[f64; N]) -> f64 {
+    values.iter().fold(0.0, |most, value| most.max(value.abs()))
+}
