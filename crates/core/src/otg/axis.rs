@@ -302,16 +302,22 @@ impl Axis {
         (profile, now)
     }
 
-    /// Pieces of constant jerk that lead to the target: the first half reckoned from the start, the second half back
-    /// from the target, so that rounding errors do not grow with the duration.
+    /// Pieces of constant jerk that lead to the target: up to the cruise reckoned from the start, then back from
+    /// the target, so that rounding errors do not grow with the duration.
     fn with_jerk(&self, pieces: &Pieces) -> Profile {
         let (mut profile, mut now) = self.after_brake();
-        let pieces = pieces.as_slice();
-        let half = pieces.len().div_ceil(2);
-        for piece in &pieces[..half] {
+        let (list, cruise) = (pieces.as_slice(), pieces.cruise());
+        let half = match cruise {
+            Some((index, _)) => index + 1,
+            None => list.len().div_ceil(2),
+        };
+        for (index, piece) in list[..half].iter().enumerate() {
+            if let Some((_, velocity)) = cruise.filter(|(at, _)| *at == index) {
+                now.v = velocity * self.scale;
+            }
             profile.push_forward(piece, self.scale, &mut now);
         }
-        profile.extend_backward(&pieces[half..], self.scale, self.target);
+        profile.extend_backward(&list[half..], self.scale, self.target);
         profile
     }
 

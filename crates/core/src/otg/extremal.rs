@@ -95,6 +95,7 @@ pub(super) struct Shape {
     pub(super) peak: f64,
     pub(super) peak_hold: f64,
     pub(super) cruise: f64,
+    pub(super) velocity: f64,
     pub(super) valley: f64,
     pub(super) valley_hold: f64,
 }
@@ -205,7 +206,8 @@ impl Family {
     #[inline]
     pub(super) fn at_velocity_limit(&self) -> Extremal {
         let y = (self.v_max - self.v_last).max(0.0);
-        self.at(self.parameter(y, sqrt(y)).max(self.start))
+        let limited = self.at(self.parameter(y, sqrt(y)).max(self.start));
+        Extremal { w: self.v_max, ..limited }
     }
 
     /// The motion that takes the time `t`, which must be possible; within the velocity limit.
@@ -392,11 +394,11 @@ impl Family {
         let Extremal { x, n, .. } = *extremal;
         let hold_x = (extremal.t_peak - 2.0 * x).max(0.0);
         let hold_n = (2.0 * (extremal.e - n)).max(0.0);
-        let cruise = extremal.cruise;
+        let (cruise, velocity) = (extremal.cruise, extremal.w);
         if self.reversed {
-            Shape { peak: n, peak_hold: hold_n, cruise, valley: x, valley_hold: hold_x }
+            Shape { peak: n, peak_hold: hold_n, cruise, velocity, valley: x, valley_hold: hold_x }
         } else {
-            Shape { peak: x, peak_hold: hold_x, cruise, valley: n, valley_hold: hold_n }
+            Shape { peak: x, peak_hold: hold_x, cruise, velocity, valley: n, valley_hold: hold_n }
         }
     }
 }

@@ -24,11 +24,13 @@ pub(super) struct Piece {
 pub(super) struct Pieces {
     list: [Piece; MAX_PIECES],
     len: usize,
+    /// The piece at constant velocity, and the velocity.
+    cruise: Option<(usize, f64)>,
 }
 
 impl Pieces {
     fn new() -> Self {
-        Self { list: [Piece::default(); MAX_PIECES], len: 0 }
+        Self { list: [Piece::default(); MAX_PIECES], len: 0, cruise: None }
     }
 
     #[inline]
@@ -37,6 +39,18 @@ impl Pieces {
             self.list[self.len] = Piece { duration, jerk, acceleration };
             self.len += 1;
         }
+    }
+
+    #[inline]
+    fn push_cruise(&mut self, duration: f64, velocity: f64) {
+        self.cruise = Some((self.len, velocity));
+        self.push(duration, 0.0, 0.0);
+    }
+
+    /// The piece at constant velocity, if there is one, and the velocity.
+    #[inline]
+    pub(super) fn cruise(&self) -> Option<(usize, f64)> {
+        self.cruise
     }
 
     #[inline]
@@ -56,13 +70,13 @@ pub(super) fn of_arrival(axis: &ThirdOrder, arrival: &Arrival) -> Pieces {
 
 /// Rise to the peak, hold, fall, cruise, fall to the valley, hold, rise; all times `sign`.
 fn extreme(shape: &Shape, sign: f64, a0: f64, af: f64) -> Pieces {
-    let Shape { peak, peak_hold, cruise, valley, valley_hold } = *shape;
+    let Shape { peak, peak_hold, cruise, velocity, valley, valley_hold } = *shape;
     let mut pieces = Pieces::new();
     pieces.push(peak - sign * a0, sign, a0);
     pieces.push(peak_hold, 0.0, sign * peak);
     if cruise > 0.0 {
         pieces.push(peak, -sign, sign * peak);
-        pieces.push(cruise, 0.0, 0.0);
+        pieces.push_cruise(cruise, sign * velocity);
         pieces.push(valley, -sign, 0.0);
     } else {
         pieces.push(peak + valley, -sign, sign * peak);
@@ -176,7 +190,9 @@ fn cruise(problem: &Problem, t: f64, span: &Span) -> Option<Pieces> {
     pieces.push(r1.x - r1.sign * a0, r1.sign, a0);
     pieces.push(r1.hold, 0.0, r1.sign * r1.x);
     pieces.push(r1.x, -r1.sign, r1.sign * r1.x);
-    pieces.push(rest, 0.0, 0.0);
+    if rest > 0.0 {
+        pieces.push_cruise(rest, w);
+    }
     pieces.push(r2.x, -r2.sign, 0.0);
     pieces.push(r2.hold, 0.0, -r2.sign * r2.x);
     pieces.push(r2.x + r2.sign * af, r2.sign, -r2.sign * r2.x);

@@ -2,7 +2,7 @@
 //!
 //! Nothing here comes from the generator but the durations and the controls of the phases.
 
-use seamline::otg::{Control, Input, Order, Phase, Trajectory};
+use seamline::otg::{Control, Input, Order, Phase, Profile, Trajectory};
 
 /// The worst found, each relative to the problem's own scale.
 #[derive(Debug, Clone, Copy, Default)]
@@ -86,20 +86,6 @@ impl Motion {
     }
 }
 
-/// How far a value is outside two bounds, relative to the bound that it passes.
-fn beyond(value: f64, low: f64, high: f64) -> f64 {
-    let over = |excess: f64, bound: f64| {
-        if excess <= 0.0 {
-            0.0
-        } else if bound == 0.0 {
-            excess
-        } else {
-            excess / bound.abs()
-        }
-    };
-    if value.is_nan() { f64::NAN } else { over(value - high, high).max(over(low - value, low)) }
-}
-
 fn judge_axis<const N: usize>(
     input: &Input<N>,
     trajectory: &Trajectory<N>,
@@ -107,112 +93,122 @@ fn judge_axis<const N: usize>(
     together: bool,
 ) -> Verdict {
     let profile = &trajectory.profiles()[axis];
-    let (limits, position_control) = (&input.limits, input.control[axis] == Control::Position);
+    let position_control = input.control[axis] == Control::Position;
+    let bounds = Bounds::new(input, axis, profile);
+    let scale = bounds.scale;
     let mut verdict = Verdict::default();
     let mut now = Motion {
         p: input.current.position[axis],
         v: input.current.velocity[axis],
         a: input.current.acceleration[axis],
     };
-    let order = profile.order();
-    let mut scale =
-        Motion { p: now.p.abs() + input.target.position[axis].abs(), v: now.v.abs(), a: now.a.abs() };
-    if !position_control {
-        scale.p = now.p.abs();
-    }
     let mut sum = 0.0;
     for (index, phase) in profile.phases().iter().enumerate() {
-        let t = phase.duration;
-        sum += t;
-        match order {
+        sum += phase.duration;
+        match profile.order() {
             Order::Third => {}
             Order::Second => now.a = phase.acceleration,
             Order::First => (now.v, now.a) = (phase.velocity, 0.0),
         }
-        let jump = now;
-        // Round-off of an acceleration that is to be zero must not grow with a long cruise.
+        let stored = Motion::of(phase);
+        let jump = off(now.p, stored.p, scale.p)
+            .max(off(now.v, stored.v, scale.v))
+            .max(off(now.a, stored.a, scale.a));
+        verdict.worst(&Verdict { jump, ..Verdict::default() });
+        verdict.worst(&bounds.of_phase(phase, index < profile.brake().len()));
+        // Rounding of an acceleration that is to be zero must not grow with a long cruise.
         if phase.jerk == 0.0 && now.a.abs() <= 1e-13 * scale.a {
             now.a = 0.0;
         }
-        let stored = Motion::of(phase);
-        let end = now.on(t, phase.jerk);
-        scale.v = scale.v.max(end.v.abs()).max(now.v.abs());
-        scale.a = scale.a.max(end.a.abs()).max(now.a.abs());
-        scale.p += t * now.v.abs().max(end.v.abs());
-        let off = |a: f64, b: f64, scale: f64| if a == b { 0.0 } else { (a - b).abs() / scale };
-        verdict.worst(&Verdict {
-            jump: off(jump.p, stored.p, scale.p)
-                .max(off(jump.v, stored.v, scale.v))
-                .max(off(jump.a, stored.a, scale.a)),
-            ..Verdict::default()
-        });
-        if index >= profile.brake().len() {
-            verdict.worst(&limits_of_phase(phase, limits_of(input, axis), position_control));
-        } else if order == Order::Third {
-            let jerk_limit = beyond(phase.jerk, -limits.jerk_max[axis], limits.jerk_max[axis]);
-            verdict.worst(&Verdict { jerk_limit, ..Verdict::default() });
-        }
-        now = end;
+        now = now.on(phase.duration, phase.jerk);
     }
-    let target = &input.target;
-    let end = profile.end();
-    let off = |a: f64, b: f64, scale: f64| if a == b { 0.0 } else { (a - b).abs() / scale };
+    let (target, end) = (&input.target, profile.end());
     let to_p = if position_control { target.position[axis] } else { end.position };
-    scale.v = scale.v.max(target.velocity[axis].abs());
-    scale.a = scale.a.max(target.acceleration[axis].abs());
     verdict.position = off(now.p, to_p, scale.p);
-    if order != Order::First {
+    if profile.order() != Order::First {
         verdict.velocity = off(now.v, target.velocity[axis], scale.v);
     }
-    if order == Order::Third {
+    if profile.order() == Order::Third {
         verdict.acceleration = off(now.a, target.acceleration[axis], scale.a);
     }
     let said = if together { trajectory.duration() } else { profile.duration() };
     verdict.duration = off(sum, said, said);
-    if profile.duration() > trajectory.duration() * (1.0 + 1e-14) {
-        verdict.duration = f64::NAN;
-    }
-    let exact = (end.velocity, end.acceleration) == (target.velocity[axis], target.acceleration[axis]);
-    if !exact || end.position != to_p {
+    let in_time = profile.duration() <= trajectory.duration() * (1.0 + 1e-14);
+    let exact = (end.velocity, end.acceleration) == (target.velocity[axis], target.acceleration[axis])
+        && end.position == to_p;
+    if !(in_time && exact) {
         verdict.jump = f64::NAN;
     }
     verdict
 }
 
-struct AxisLimits {
+fn off(a: f64, b: f64, scale: f64) -> f64 {
+    if a == b { 0.0 } else { (a - b).abs() / scale }
+}
+
+/// What the motion may do, and how large its numbers get.
+struct Bounds {
     v: (f64, f64),
     a: (f64, f64),
-    j: f64,
+    jerk: f64,
+    position_control: bool,
+    /// Largest velocity and acceleration on the way; for positions the coordinates, and the largest velocity times the duration.
+    scale: Motion,
 }
 
-fn limits_of<const N: usize>(input: &Input<N>, axis: usize) -> AxisLimits {
-    let l = &input.limits;
-    AxisLimits {
-        v: (l.velocity_min[axis], l.velocity_max[axis]),
-        a: (l.acceleration_min[axis], l.acceleration_max[axis]),
-        j: l.jerk_max[axis],
-    }
-}
-
-/// The extremes of a phase: the acceleration at its ends, the velocity there and where the acceleration is zero.
-fn limits_of_phase(phase: &Phase, limits: AxisLimits, position_control: bool) -> Verdict {
-    let start = Motion::of(phase);
-    let end = start.on(phase.duration, phase.jerk);
-    let mut velocity_limit = 0.0_f64;
-    if position_control {
-        let mut check = |v: f64| velocity_limit = velocity_limit.max(beyond(v, limits.v.0, limits.v.1));
-        check(start.v);
-        check(end.v);
-        let turn = -phase.acceleration / phase.jerk;
-        if turn > 0.0 && turn < phase.duration {
-            check(start.on(turn, phase.jerk).v);
+impl Bounds {
+    fn new<const N: usize>(input: &Input<N>, axis: usize, profile: &Profile) -> Self {
+        let l = &input.limits;
+        let position_control = input.control[axis] == Control::Position;
+        let mut scale = Motion {
+            p: 0.0,
+            v: input.current.velocity[axis].abs().max(input.target.velocity[axis].abs()),
+            a: input.current.acceleration[axis].abs().max(input.target.acceleration[axis].abs()),
+        };
+        for phase in profile.phases() {
+            let turn = Motion::of(phase).on(turn(phase), phase.jerk);
+            scale.v = scale.v.max(phase.velocity.abs()).max(turn.v.abs());
+            scale.a = scale.a.max(phase.acceleration.abs());
+        }
+        let coordinates = input.current.position[axis].abs() + profile.end().position.abs();
+        scale.p = coordinates + scale.v * profile.duration();
+        Self {
+            v: (l.velocity_min[axis], l.velocity_max[axis]),
+            a: (l.acceleration_min[axis], l.acceleration_max[axis]),
+            jerk: l.jerk_max[axis],
+            position_control,
+            scale,
         }
     }
-    let beyond_a = |a: f64| beyond(a, limits.a.0, limits.a.1);
-    Verdict {
-        velocity_limit,
-        acceleration_limit: beyond_a(start.a).max(beyond_a(end.a)),
-        jerk_limit: beyond(phase.jerk, -limits.j, limits.j),
-        ..Verdict::default()
+
+    /// The extremes of a phase: the acceleration at its ends, the velocity there and where the acceleration is zero.
+    fn of_phase(&self, phase: &Phase, brake: bool) -> Verdict {
+        let mut verdict =
+            Verdict { jerk_limit: beyond(phase.jerk, (-self.jerk, self.jerk), 0.0), ..Verdict::default() };
+        if brake {
+            return verdict;
+        }
+        let start = Motion::of(phase);
+        let end = start.on(phase.duration, phase.jerk);
+        let beyond_a = |a: f64| beyond(a, self.a, self.scale.a);
+        verdict.acceleration_limit = beyond_a(start.a).max(beyond_a(end.a));
+        if self.position_control {
+            let beyond_v = |v: f64| beyond(v, self.v, self.scale.v);
+            let turn = start.on(turn(phase), phase.jerk);
+            verdict.velocity_limit = beyond_v(start.v).max(beyond_v(end.v)).max(beyond_v(turn.v));
+        }
+        verdict
     }
+}
+
+/// Time within the phase at which the acceleration is zero; the start if there is none.
+fn turn(phase: &Phase) -> f64 {
+    let turn = -phase.acceleration / phase.jerk;
+    if turn > 0.0 && turn < phase.duration { turn } else { 0.0 }
+}
+
+/// How far a value is outside two bounds, relative to the bound that it passes or, if that is larger, to the scale.
+fn beyond(value: f64, (low, high): (f64, f64), scale: f64) -> f64 {
+    let over = |excess: f64, bound: f64| if excess > 0.0 { excess / scale.max(bound.abs()) } else { 0.0 };
+    if value.is_nan() { f64::NAN } else { over(value - high, high).max(over(low - value, low)) }
 }
