@@ -121,7 +121,7 @@ function gapOf(points) {
   return steps.length ? 8 * steps[steps.length >> 1] + 4 * data.period : Infinity;
 }
 
-// A plot over time. `options`: title, unit, height, small; series [{ name, points, colour, gaps, width }],
+// A plot over time. `options`: title, unit, height, small; series [{ name, points, colour, gaps }],
 // spans [[from, to, value]] (a programmed value), limits [values], bands [[time, word]], range() → [low, high] to show.
 class TimeChart {
   constructor(host, options) {
@@ -270,7 +270,7 @@ class TimeChart {
     });
   }
 
-  drawSeries(g, { points, colour, gap, width }, x, y) {
+  drawSeries(g, { points, colour, gap }, x, y) {
     g.beginPath();
     let previous = -Infinity;
     for (let i = Math.max(0, firstAfter(points, view.from) - 1); 2 * i < points.length; i++) {
@@ -281,7 +281,7 @@ class TimeChart {
       if (time > view.to) break;
     }
     g.strokeStyle = colour || COLOURS.travel;
-    g.lineWidth = width || 1.2;
+    g.lineWidth = 1.2;
     g.lineJoin = "round";
     g.stroke();
   }
