@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// A file that is written under another name and takes its own when it is whole. Dropped before, it leaves nothing.
 #[derive(Debug)]
-pub struct AtomicFile {
+pub(super) struct AtomicFile {
     file: File,
     path: PathBuf,
     temporary: PathBuf,
@@ -19,7 +19,7 @@ impl AtomicFile {
     ///
     /// # Errors
     /// Those of the file system, with the name in the message.
-    pub fn create(path: &Path) -> io::Result<Self> {
+    pub(super) fn create(path: &Path) -> io::Result<Self> {
         let mut name = OsString::from(path.file_name().unwrap_or_default());
         // Two programs that write the same file must not share the temporary one.
         name.push(format!(".{}.part", std::process::id()));
@@ -32,7 +32,7 @@ impl AtomicFile {
     ///
     /// # Errors
     /// Those of the file system, with the name in the message.
-    pub fn commit(mut self) -> io::Result<()> {
+    pub(super) fn commit(mut self) -> io::Result<()> {
         self.file.flush()?;
         fs::rename(&self.temporary, &self.path).map_err(|error| named(&self.path, &error))?;
         self.committed = true;

@@ -9,8 +9,7 @@ use super::number;
 use super::sample::{MAX_JOINTS, RunMode, Sample};
 
 /// The columns for a robot of `joints` joints, separated by commas.
-#[must_use]
-pub fn header(joints: usize) -> String {
+pub(super) fn header(joints: usize) -> String {
     let mut header = String::from("time_s,mode,line,segment,override");
     // Writing into a string cannot fail.
     for joint in 1..=joints {

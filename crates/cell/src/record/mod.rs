@@ -20,8 +20,7 @@ mod table;
 mod testing;
 mod times;
 
-pub use atomic::{AtomicFile, write_whole};
-pub use csv::header;
+pub use atomic::write_whole;
 pub use envelope::{TRACE_POINTS, Trace};
 pub use figures::{Analysis, Findings, JointFigures, MoveFigures, Peak, SeamFigures};
 pub use info::{Acceptance, Event, EventKind, JointInfo, RunInfo, SegmentInfo, SegmentKind};

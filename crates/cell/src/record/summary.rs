@@ -208,6 +208,8 @@ fn checks(run: &RunInfo, findings: &Findings, samples_lost: u64) -> Vec<Check> {
         }))
     };
     let position = worst(findings.joints.iter().map(|of| (of.position, format!("joint {}", of.name))));
+    // Maxima pass over what is no number, so that it is counted by itself.
+    let not_finite = (findings.not_finite > 0).then(|| (findings.not_finite as f64, String::new()));
     let lost = Some((samples_lost as f64, String::new()));
     let rows = [
         ("path deviation", "µm", 1e6, path_deviation, moves(|of| Some(of.path_deviation_max_mm()? * 1e-3))),
@@ -223,6 +225,7 @@ fn checks(run: &RunInfo, findings: &Findings, samples_lost: u64) -> Vec<Check> {
         ("joint velocity", "% of limit", 1e2, joint, joints(|of| of.velocity)),
         ("joint acceleration", "% of limit", 1e2, joint, joints(|of| of.acceleration)),
         ("joint jerk", "% of limit", 1e2, joint_jerk, joints(|of| of.jerk)),
+        ("samples not finite", "", 1.0, 0.0, not_finite),
         ("samples lost", "", 1.0, 0.0, lost),
     ];
     let check = |(name, unit, scale, bound, worst): (&'static str, &'static str, f64, f64, Worst)| {
@@ -233,7 +236,6 @@ fn checks(run: &RunInfo, findings: &Findings, samples_lost: u64) -> Vec<Check> {
     rows.into_iter().filter_map(check).collect()
 }
 
-/// NaN is worse than anything.
 fn worst(values: impl Iterator<Item = (f64, String)>) -> Worst {
-    values.reduce(|worst, value| if value.0 > worst.0 || value.0.is_nan() { value } else { worst })
+    values.reduce(|worst, value| if value.0 > worst.0 { value } else { worst })
 }

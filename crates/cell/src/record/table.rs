@@ -23,7 +23,8 @@ impl Verdict {
 /// A number with about four significant digits; with an exponent only where it is very small.
 #[must_use]
 pub fn rounded(value: f64) -> String {
-    let magnitude = value.abs();
+    // What rounds up to the next power of ten is shown like it.
+    let magnitude = value.abs() * (1.0 + 5e-5);
     if magnitude > 0.0 && magnitude < 1e-3 {
         return format!("{value:.1e}");
     }
@@ -151,4 +152,24 @@ fn write_table(
         writeln!(f, "{}", line.trim_end())?;
     }
     writeln!(f)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn four_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (12345.6, "12346"),
+            (123.456, "123.5"),
+            (99.99999, "100.0"),
+            (-9.87654, "-9.877"),
+            (0.012345, "0.0123"),
+            (2.34e-7, "2.3e-7"),
+        ] {
+            assert_eq!(rounded(value), text);
+        }
+    }
 }

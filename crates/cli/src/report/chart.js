@@ -52,8 +52,8 @@ function ticks(from, to, count) {
 
 function tickText(value, range) {
   const magnitude = Math.max(Math.abs(value), range);
-  if (magnitude >= 1e5) return value === 0 ? "0" : (value / 1000).toFixed(magnitude >= 1e6 ? 0 : 0) + "k";
-  if (magnitude >= 1e4) return value === 0 ? "0" : +(value / 1000).toFixed(1) + "k";
+  if (value === 0) return "0";
+  if (magnitude >= 1e4) return +(value / 1000).toFixed(magnitude >= 1e5 ? 0 : 1) + "k";
   const digits = Math.max(0, Math.min(6, 1 - Math.floor(Math.log10(range / 2 || 1))));
   return String(+value.toFixed(digits));
 }
@@ -102,6 +102,17 @@ const arcSpans = (() => {
 })();
 const faultTimes = data.events.filter((event) => event.kind === "fault").map((event) => event.time);
 
+// The part of a trace where the arc is on.
+function whileWelding(points) {
+  const kept = [];
+  let span = 0;
+  for (let i = 0; i < points.length; i += 2) {
+    while (span < arcSpans.length && arcSpans[span][1] < points[i]) span++;
+    if (span < arcSpans.length && points[i] >= arcSpans[span][0]) kept.push(points[i], points[i + 1]);
+  }
+  return kept;
+}
+
 // Neighbouring points further apart than this are two stretches, not one line.
 function gapOf(points) {
   const steps = [];
@@ -110,7 +121,7 @@ function gapOf(points) {
   return steps.length ? 8 * steps[steps.length >> 1] + 4 * data.period : Infinity;
 }
 
-// A plot over time. `options`: title, unit, height, small; series [{ name, points, colour, gaps, width }],
+// A plot over time. `options`: title, unit, height, small; series [{ name, points, colour, gaps }],
 // spans [[from, to, value]] (a programmed value), limits [values], bands [[time, word]], range() → [low, high] to show.
 class TimeChart {
   constructor(host, options) {
@@ -224,7 +235,7 @@ class TimeChart {
     g.fillStyle = COLOURS.soft;
     g.textAlign = "right";
     g.textBaseline = "middle";
-    for (const value of ticks(low, high, (bottom - top) / 26)) {
+    for (const value of ticks(low, high, (bottom - top) / (this.small ? 15 : 19))) {
       line(g, left, y(value), right, y(value), Math.abs(value) < 1e-12 ? COLOURS.frame : COLOURS.grid, 1);
       g.fillText(tickText(value, high - low), left - 5, y(value));
     }
@@ -259,7 +270,7 @@ class TimeChart {
     });
   }
 
-  drawSeries(g, { points, colour, gap, width }, x, y) {
+  drawSeries(g, { points, colour, gap }, x, y) {
     g.beginPath();
     let previous = -Infinity;
     for (let i = Math.max(0, firstAfter(points, view.from) - 1); 2 * i < points.length; i++) {
@@ -270,7 +281,7 @@ class TimeChart {
       if (time > view.to) break;
     }
     g.strokeStyle = colour || COLOURS.travel;
-    g.lineWidth = width || 1.2;
+    g.lineWidth = 1.2;
     g.lineJoin = "round";
     g.stroke();
   }

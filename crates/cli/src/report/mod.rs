@@ -9,7 +9,7 @@ mod tables;
 use std::io;
 use std::path::Path;
 
-use seamline_cell::record::{PlotData, RunInfo, SegmentInfo, Summary, write_whole};
+use seamline_cell::record::{EventKind, PlotData, RunInfo, SegmentInfo, Summary, write_whole};
 
 const STYLE: &str = include_str!("report.css");
 const SCRIPTS: [&str; 3] = [include_str!("chart.js"), include_str!("scene.js"), include_str!("page.js")];
@@ -30,6 +30,7 @@ pub(crate) fn write_report(
 
 fn page(run: &RunInfo, summary: &Summary, segments: &[SegmentInfo], plot: &PlotData) -> io::Result<String> {
     let data = serde_json::to_string(&data::Data::new(run, summary, segments, plot))?;
+    let has_weld = plot.events.iter().any(|(event, _)| event.kind == EventKind::ArcOn);
     let has_seam = summary.seam.is_some();
     Ok([
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">",
@@ -43,7 +44,7 @@ fn page(run: &RunInfo, summary: &Summary, segments: &[SegmentInfo], plot: &PlotD
         &tables::header(summary),
         "<main>",
         &overview(summary),
-        &along_the_path(has_seam),
+        &along_the_path(has_weld, has_seam),
         &joints(),
         &tables::moves(summary),
         &tables::computing_times(summary),
@@ -62,7 +63,7 @@ fn overview(summary: &Summary) -> String {
         <canvas></canvas><div class=\"legend\">\
         <span><i class=\"programmed\"></i>programmed</span><span><i class=\"weld\"></i>commanded, arc on</span>\
         <span><i class=\"travel\"></i>commanded, arc off</span>\
-        <span class=\"hint\">drag to turn · shift-drag to move · ctrl-wheel or +/− to zoom</span></div></div>";
+        <span class=\"hint\">mm, robot frame · drag: turn · shift-drag: move · ctrl-wheel: zoom</span></div></div>";
     let script = "<noscript><p class=\"fault\">The plots need JavaScript, which is off in this browser. \
         The tables do not.</p></noscript>";
     format!(
@@ -72,14 +73,23 @@ fn overview(summary: &Summary) -> String {
     )
 }
 
-fn along_the_path(has_seam: bool) -> String {
-    let seam = if has_seam { "<div class=\"panel chart\" id=\"seam\"></div>" } else { "" };
+fn along_the_path(has_weld: bool, has_seam: bool) -> String {
+    let chart = |wanted: bool, id: &str| {
+        if wanted { format!("<div class=\"panel chart\" id=\"{id}\"></div>") } else { String::new() }
+    };
+    let charts = [
+        chart(true, "speed"),
+        chart(has_weld, "weld-speed"),
+        chart(true, "deviation"),
+        chart(has_seam, "seam"),
+        chart(true, "override"),
+    ];
     format!(
         "<section id=\"path\"><h2>Along the path</h2>\
         <p class=\"hint\">All plots over time share one axis: drag to zoom, double-click for the whole run, \
         shift-drag to move. Shaded where the arc is on.</p>\
-        <div class=\"panel chart\" id=\"speed\"></div><div class=\"panel chart\" id=\"deviation\"></div>{seam}\
-        <div class=\"panel chart\" id=\"override\"></div></section>"
+        {}</section>",
+        charts.concat()
     )
 }
 

@@ -5,9 +5,17 @@ const byId = (id) => document.getElementById(id);
 new Scene(byId("scene"), byId("scene-bar"));
 
 new TimeChart(byId("speed"), {
-  title: "Speed of the tool centre point, mm/s", unit: "mm/s", height: 190,
+  title: "Speed of the tool centre point, mm/s", unit: "mm/s", height: 150,
   series: [{ points: data.speed }], spans: data.programmed_speed, range: () => [0],
 });
+if (arcSpans.length) {
+  const welds = data.programmed_speed.filter(([from, to]) => arcSpans.some((span) => from < span[1] && to > span[0]));
+  new TimeChart(byId("weld-speed"), {
+    title: "Speed with the arc on, mm/s", unit: "mm/s", height: 130,
+    series: [{ points: whileWelding(data.speed), gaps: true, colour: COLOURS.weld }], spans: welds,
+    range: () => [0, 1.1 * Math.max(0, ...welds.map((weld) => weld[2]))],
+  });
+}
 new TimeChart(byId("deviation"), {
   title: "Distance from the programmed path, µm", unit: "µm", height: 120,
   series: [{ points: data.deviation, gaps: true }],
@@ -44,7 +52,9 @@ element("", "");
 for (const title of ORDERS) element("title", title);
 for (const joint of data.joints) {
   element("name", joint.name);
-  joint.traces.forEach(({ limits, used, points }, order) => {
+  joint.traces.forEach(({ limits: all, used, points }, order) => {
+    // A joint without a limit has null.
+    const limits = all.filter(Number.isFinite);
     const bound = order === 3 ? 1.01 : 1;
     new TimeChart(element("cell", ""), {
       small: true, height: 104, unit: "", series: [{ points }], limits,

@@ -4,7 +4,7 @@ class Scene {
   constructor(host, bar) {
     this.canvas = host.querySelector("canvas");
     this.path = data.tool_path;
-    this.turn = { yaw: -60, pitch: 28 };
+    this.turn = this.iso();
     this.zoom = 1;
     this.shift = [0, 0];
     this.target = "all";
@@ -24,7 +24,7 @@ class Scene {
       return button;
     };
     const turn = (yaw, pitch) => () => { this.turn = { yaw, pitch }; this.fit(); };
-    add("Iso", "From the front, above", turn(-60, 28));
+    add("Iso", "From the front, above", () => { this.turn = this.iso(); this.fit(); });
     add("Top", "x to the right, y up", turn(-90, 90));
     add("Front", "x to the right, z up", turn(-90, 0));
     add("Side", "y to the right, z up", turn(0, 0));
@@ -68,6 +68,12 @@ class Scene {
     }, { passive: false });
   }
 
+  // Slantwise from above, with the longer way of the path across the screen.
+  iso() {
+    const { low, high } = this.bounds();
+    return { yaw: high[1] - low[1] > high[0] - low[0] ? -28 : -62, pitch: 28 };
+  }
+
   // The part of the path to show.
   bounds() {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
@@ -95,18 +101,26 @@ class Scene {
     const up = [-Math.sin(pitch) * Math.cos(yaw), -Math.sin(pitch) * Math.sin(yaw), Math.cos(pitch)];
     const dot = (a, x, y, z) => a[0] * x + a[1] * y + a[2] * z;
     const { low, high } = this.bounds();
+    const step = niceStep(Math.max(high[0] - low[0], high[1] - low[1], 1), 8);
+    const floor = { step, low: [0, 0, low[2]], high: [0, 0, high[2]] };
+    for (const axis of [0, 1]) {
+      const [first, last] = [Math.floor(low[axis] / step), Math.ceil(high[axis] / step)];
+      const aside = last - first < 3 ? 1 : 0;
+      floor.low[axis] = (first - aside) * step;
+      floor.high[axis] = (last + aside) * step;
+    }
     const corners = [];
-    for (let i = 0; i < 8; i++) corners.push([0, 1, 2].map((axis) => ((i >> axis) & 1 ? high : low)[axis]));
+    for (let i = 0; i < 8; i++) corners.push([0, 1, 2].map((axis) => ((i >> axis) & 1 ? floor.high : floor.low)[axis]));
     const xs = corners.map((c) => dot(right, ...c)), ys = corners.map((c) => dot(up, ...c));
     const extent = (values) => Math.max(...values) - Math.min(...values);
-    const scale = this.zoom * Math.min((width - 150) / Math.max(extent(xs), 1), (height - 150) / Math.max(extent(ys), 1));
+    const scale = this.zoom * Math.min((width - 170) / Math.max(extent(xs), 1), (height - 140) / Math.max(extent(ys), 1));
     const middle = (values) => (Math.max(...values) + Math.min(...values)) / 2;
     const [cx, cy] = [middle(xs), middle(ys)];
     return {
-      scale, low, high,
+      floor,
       at: (x, y, z) => [
         width / 2 + this.shift[0] + (dot(right, x, y, z) - cx) * scale,
-        height / 2 + this.shift[1] - (dot(up, x, y, z) - cy) * scale,
+        height / 2 - 6 + this.shift[1] - (dot(up, x, y, z) - cy) * scale,
       ],
     };
   }
@@ -136,10 +150,8 @@ class Scene {
   }
 
   // A grid below the path, with its coordinates along two edges.
-  drawFloor(g, { at, low, high }) {
-    const step = niceStep(Math.max(high[0] - low[0], high[1] - low[1], 1), 6);
-    const down = (value) => Math.floor(value / step - 0.2) * step, up = (value) => Math.ceil(value / step + 0.2) * step;
-    const [x0, x1, y0, y1, z] = [down(low[0]), up(high[0]), down(low[1]), up(high[1]), low[2]];
+  drawFloor(g, { at, floor: { step, low, high } }) {
+    const [[x0, y0, z], [x1, y1]] = [low, high];
     const segment = (a, b) => line(g, ...at(...a), ...at(...b), "#e3e9ef", 1);
     for (let x = x0; x <= x1 + step / 2; x += step) segment([x, y0, z], [x, y1, z]);
     for (let y = y0; y <= y1 + step / 2; y += step) segment([x0, y, z], [x1, y, z]);
@@ -147,7 +159,11 @@ class Scene {
     // The edge that is lower on the screen carries the labels.
     const lower = (a, b) => at(...a)[1] > at(...b)[1];
     const edgeY = lower([x0, y0, z], [x0, y1, z]) ? y0 : y1, edgeX = lower([x0, y0, z], [x1, y0, z]) ? x0 : x1;
-    const outward = (p, q) => [Math.sign(at(...p)[0] - at(...q)[0]) * 16, 11];
+    const outward = (place, opposite) => {
+      const [[px, py], [qx, qy]] = [at(...place), at(...opposite)];
+      const distance = Math.hypot(px - qx, py - qy) || 1;
+      return [((px - qx) / distance) * 20, ((py - qy) / distance) * 13];
+    };
     g.fillStyle = COLOURS.soft;
     g.font = FONT;
     g.textAlign = "center";
@@ -235,9 +251,6 @@ class Scene {
       g.fillStyle = colour;
       if (Math.hypot(dx, dy) > 0.2) g.fillText(name, ox + dx * (length + 9), oy - dy * (length + 9));
     }
-    g.font = FONT;
-    g.fillStyle = COLOURS.soft;
-    g.fillText("robot frame, mm", ox - 4, oy + 52);
   }
 
   drawCursor(g, { at }) {

@@ -145,7 +145,7 @@ pub(super) fn computing_times(summary: &Summary) -> String {
     };
     format!(
         "<section id=\"times\"><h2>Computing time</h2><p class=\"hint\">Microseconds. Each histogram counts cycles on a \
-        logarithmic scale, over time on a logarithmic scale from {} to {} µs.</p>\
+        logarithmic scale, over time on a logarithmic scale from {} to {} µs; the black line is the median, the red one p99.9.</p>\
         <div class=\"panel\"><table class=\"times\"><thead><tr><th>stage</th><th class=\"number\">p50</th>\
         <th class=\"number\">p99</th><th class=\"number\">p99.9</th><th class=\"number\">max</th>\
         <th>{}</th></tr></thead><tbody>{}</tbody></table></div></section>",

@@ -268,6 +268,23 @@ fn the_data_is_json() {
     assert_eq!(data["programmed"][2]["position"].as_array().unwrap().len(), 3 * 65);
 }
 
+/// A run that never began has a page, too, whatever the texts in it.
+#[test]
+fn an_empty_run_has_a_page() {
+    let run = robot();
+    let mut analysis = Analysis::new(&run);
+    let text = "</script><b>no drive".to_owned();
+    analysis.event(Event { time: 0.0, line: 0, kind: EventKind::Fault, text });
+    let findings = analysis.finish();
+    let summary = Summary::new(&run, &findings, Outcome::default());
+    let page = page(&run, &summary, &findings.segments, &findings.plot).unwrap();
+    assert!(page.contains("id=\"scene\"") && !page.contains("id=\"times\""));
+    assert!(page.matches("</script>").count() == 2 && !page.contains("<b>no drive"));
+    if let Some(folder) = std::env::var_os("SEAMLINE_REPORT_DIR") {
+        std::fs::write(PathBuf::from(folder).join("empty.html"), page).unwrap();
+    }
+}
+
 /// A run that ends in a fault says so at the top.
 #[test]
 fn faults_are_shown() {

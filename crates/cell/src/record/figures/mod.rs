@@ -39,6 +39,7 @@ pub struct Analysis {
     seam: SeamWatch,
     plot: PlotCollector,
     cycles: u64,
+    not_finite: u64,
     duration: f64,
 }
 
@@ -47,9 +48,11 @@ pub struct Analysis {
 pub struct Findings {
     /// Cycles seen.
     pub cycles: u64,
+    /// Samples in which a command or the tool's pose is no finite number: none, in a controller that works.
+    pub not_finite: u64,
     /// Time of the last sample, in seconds.
     pub duration: f64,
-    /// Figures of each joint.
+    /// Figures of each joint; none where there was no sample.
     pub joints: Vec<JointFigures>,
     /// The segments that were executed, in order.
     pub segments: Vec<SegmentInfo>,
@@ -73,6 +76,7 @@ impl Analysis {
             seam: SeamWatch::default(),
             plot: PlotCollector::new(run.joints.len()),
             cycles: 0,
+            not_finite: 0,
             duration: 0.0,
         }
     }
@@ -91,6 +95,9 @@ impl Analysis {
     pub fn sample(&mut self, sample: &Sample) {
         self.cycles += 1;
         self.duration = sample.time;
+        let pose = &sample.tcp;
+        let numbers = sample.command.iter().chain(&pose.translation.vector).chain(&pose.rotation.coords);
+        self.not_finite += u64::from(!numbers.copied().all(f64::is_finite));
         let derivatives = self.differences.push(sample);
         self.joints.push(sample, &derivatives);
         let moment = self.moves.push(sample);
@@ -113,8 +120,9 @@ impl Analysis {
         let (segments, moves) = self.moves.finish();
         Findings {
             cycles: self.cycles,
+            not_finite: self.not_finite,
             duration: self.duration,
-            joints: self.joints.finish(),
+            joints: if self.cycles > 0 { self.joints.finish() } else { Vec::new() },
             segments,
             moves,
             seam: self.seam.finish(),

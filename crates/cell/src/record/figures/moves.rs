@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use seamline::geometry::Vector3;
 use seamline::path::{Curve, Measure};
 use serde::Serialize;
 
@@ -31,10 +32,10 @@ pub struct MoveFigures {
     /// Programmed speed of the tool centre point.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_programmed_mm_s: Option<f64>,
-    /// Least speed in the constant part.
+    /// Least speed in the constant part while the override is steady.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_min_mm_s: Option<f64>,
-    /// Greatest speed in the constant part.
+    /// Greatest speed in the constant part while the override is steady.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_max_mm_s: Option<f64>,
     /// Greatest distance of the speed in the constant part from the programmed speed times the override, as a fraction
@@ -67,8 +68,17 @@ pub(super) struct MoveWatch {
     /// Segments announced and not reached yet.
     ahead: VecDeque<SegmentInfo>,
     current: Option<Current>,
-    last: Option<Sample>,
+    last: Option<Before>,
     done: Vec<(SegmentInfo, MoveFigures)>,
+}
+
+/// What is kept of the last sample.
+#[derive(Debug, Clone, Copy)]
+struct Before {
+    time: f64,
+    segment: u32,
+    position: Vector3,
+    override_rate: f64,
 }
 
 /// What the move watch finds in one sample.
@@ -90,16 +100,11 @@ struct Current {
     end: f64,
     distance: f64,
     angle: f64,
-    speed: Option<Speed>,
+    /// Least and greatest speed in the constant part.
+    speed: Option<[f64; 2]>,
+    speed_error: f64,
     /// Path coordinate of the last sample.
     last_s: f64,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Speed {
-    least: f64,
-    greatest: f64,
-    error: f64,
 }
 
 impl MoveWatch {
@@ -113,13 +118,16 @@ impl MoveWatch {
     }
 
     pub(super) fn push(&mut self, sample: &Sample) -> Moment {
-        let before = self.last.replace(*sample).filter(|last| follows(last.time, sample.time, self.period));
-        let speed = before.as_ref().map_or(f64::NAN, |last| {
-            (sample.tcp.translation.vector - last.tcp.translation.vector).norm() / self.period
-        });
+        let now = Before {
+            time: sample.time,
+            segment: sample.segment,
+            position: sample.tcp.translation.vector,
+            override_rate: sample.override_rate,
+        };
+        let before = self.last.replace(now).filter(|last| follows(last.time, now.time, self.period));
+        let speed = before.map_or(f64::NAN, |last| (now.position - last.position).norm() / self.period);
         let entered = self.enter(sample);
-        let deviation =
-            self.current.as_mut().map_or(f64::NAN, |current| current.push(sample, before.as_ref(), speed));
+        let deviation = self.current.as_mut().map_or(f64::NAN, |current| current.push(sample, before, speed));
         Moment { speed, deviation, entered }
     }
 
@@ -165,12 +173,13 @@ impl Current {
             distance: 0.0,
             angle: 0.0,
             speed: None,
+            speed_error: 0.0,
             last_s: f64::NAN,
         }
     }
 
     /// Takes a sample of this segment; returns its distance from the path.
-    fn push(&mut self, sample: &Sample, before: Option<&Sample>, speed: f64) -> f64 {
+    fn push(&mut self, sample: &Sample, before: Option<Before>, speed: f64) -> f64 {
         self.end = sample.time;
         let Some(programmed) = &self.programmed else { return f64::NAN };
         let Deviation { s, distance, angle } = programmed.deviation(&sample.tcp);
@@ -184,18 +193,14 @@ impl Current {
             && before.segment == sample.segment
         {
             let expected = speed_programmed * 0.5 * (before.override_rate + sample.override_rate);
-            self.take_speed(speed, (speed - expected).abs() / speed_programmed);
+            self.speed_error = self.speed_error.max((speed - expected).abs() / speed_programmed);
+            // While the override changes, and in a pause, the speed is neither the job's nor a mistake.
+            if before.override_rate == sample.override_rate && sample.override_rate > 0.0 {
+                let [least, greatest] = self.speed.unwrap_or([speed, speed]);
+                self.speed = Some([least.min(speed), greatest.max(speed)]);
+            }
         }
         distance
-    }
-
-    fn take_speed(&mut self, speed: f64, error: f64) {
-        let so_far = self.speed.unwrap_or(Speed { least: speed, greatest: speed, error });
-        self.speed = Some(Speed {
-            least: so_far.least.min(speed),
-            greatest: so_far.greatest.max(speed),
-            error: so_far.error.max(error),
-        });
     }
 
     fn figures(&self) -> MoveFigures {
@@ -216,9 +221,9 @@ impl Current {
             end_s: self.end,
             length_mm: path.map(|_| mm(info.length())),
             speed_programmed_mm_s: info.speed.filter(|_| travels).map(mm),
-            speed_min_mm_s: self.speed.map(|speed| mm(speed.least)),
-            speed_max_mm_s: self.speed.map(|speed| mm(speed.greatest)),
-            speed_error_max: self.speed.map(|speed| speed.error),
+            speed_min_mm_s: self.speed.map(|[least, _]| mm(least)),
+            speed_max_mm_s: self.speed.map(|[_, greatest]| mm(greatest)),
+            speed_error_max: self.speed.map(|_| self.speed_error),
             straightness_max_mm: path.filter(|_| !is_arc).map(|_| mm(self.distance)),
             arc_deviation_max_mm: path.filter(|_| is_arc).map(|_| mm(self.distance)),
             orientation_deviation_max_rad: path.map(|_| self.angle),

@@ -339,3 +339,20 @@ fn summary_keys_and_bounds() {
     let table = summary.to_string();
     assert!(table.contains("✗  path deviation") && table.contains("MOVL in line 12"), "{table}");
 }
+
+/// What is no number is not passed over, and a run without samples has figures, too.
+#[test]
+fn no_numbers_and_no_samples() {
+    let findings = analyse(&[], 10, |time, sample| {
+        if time > 0.005 {
+            sample.command[1] = f64::NAN;
+        }
+    });
+    let summary = Summary::new(&robot(2), &findings, Outcome::default());
+    assert_eq!(summary.verdict, Verdict::OutOfBounds);
+    let check = summary.checks.iter().find(|check| !check.ok).unwrap();
+    assert_eq!((check.name, check.value), ("samples not finite", 4.0));
+    let summary = Summary::new(&robot(2), &analyse(&[], 0, |_, _| ()), Outcome::default());
+    assert_eq!((summary.verdict, summary.cycles, summary.joint_jerk_max), (Verdict::Ok, 0, 0.0));
+    assert!(!summary.to_json().unwrap().contains("inf"));
+}
