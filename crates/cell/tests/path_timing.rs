@@ -1,6 +1,7 @@
 //! Path-true speed on arms and paths of the tests' own.
 
-use seamline_cell::plan::timing::{JointJet, JointPath, PathLimits, TimingLimits, time_path};
+use seamline::kinematics::JointJet;
+use seamline_cell::plan::timing::{JointPath, PathLimits, TimingLimits, time_path};
 
 /// A planar arm of two links on a straight line; exact derivatives from its two absolute link angles.
 struct Planar {
