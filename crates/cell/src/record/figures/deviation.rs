@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use seamline::geometry::{Pose, Rotation, Vector3};
-use seamline::path::{Arc, Curve, Measure, Path};
+use seamline::path::{Arc, Curve, Measure, Orientation, Path};
 
 /// Where a pose stands with respect to a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,9 +19,7 @@ pub(super) struct Deviation {
 /// A path prepared for the question.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Programmed {
-    curve: Curve,
-    length: f64,
-    measure: Measure,
+    path: Path,
     start: Rotation,
     /// The whole turn of the orientation, as a rotation vector.
     turn: Vector3,
@@ -29,26 +27,34 @@ pub(super) struct Programmed {
 
 impl Programmed {
     pub(super) fn new(path: &Path) -> Self {
-        let length = path.length();
-        let (start, end) = (path.pose(0.0).rotation, path.pose(length).rotation);
+        let (start, end) = (path.pose(0.0).rotation, path.pose(path.length()).rotation);
         let turn = (end * start.inverse()).scaled_axis();
-        Self { curve: *path.curve(), length, measure: path.measure(), start, turn }
+        Self { path: *path, start, turn }
     }
 
     pub(super) fn deviation(&self, pose: &Pose) -> Deviation {
         let position = pose.translation.vector;
-        let (on_curve, distance) = match &self.curve {
+        let (on_curve, distance) = match self.path.curve() {
             Curve::Line { start, direction, length } => from_line(&position, start, direction, *length),
             Curve::Arc(arc) => from_arc(&position, arc),
         };
         let turned = pose.rotation * self.start.inverse();
-        let s = match self.measure {
+        let s = match self.path.measure() {
             Measure::Length => on_curve,
             Measure::Angle => nearest_turn(&turned, &self.turn),
         };
-        let fraction = if self.length > 0.0 { s / self.length } else { 0.0 };
-        let programmed = Rotation::from_scaled_axis(self.turn * fraction);
-        Deviation { s, distance, angle: (turned * programmed.inverse()).angle() }
+        Deviation { s, distance, angle: (turned * self.programmed(s).inverse()).angle() }
+    }
+
+    /// The programmed turn from the start: the geodesic, or what the path has through its via point.
+    fn programmed(&self, s: f64) -> Rotation {
+        match self.path.orientation() {
+            Orientation::Geodesic(_) if self.path.length() > 0.0 => {
+                Rotation::from_scaled_axis(self.turn * (s / self.path.length()))
+            }
+            Orientation::Geodesic(_) => Rotation::identity(),
+            Orientation::Through(_) => self.path.pose(s).rotation * self.start.inverse(),
+        }
     }
 }
 
