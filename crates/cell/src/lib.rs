@@ -6,10 +6,12 @@
 //! | [`job`] | INFORM job files: reader, checks, interpreter |
 //! | [`plan`] | from steps to blocks; the speed along a path that keeps every joint limit |
 //! | [`record`] | what a run leaves behind: recording, figures, data for plots |
+//! | [`run`] | one job in one cell: check, run, real time |
 //! | [`sim`] | simulated servo drives |
 
 pub mod cell;
 pub mod job;
 pub mod plan;
 pub mod record;
+pub mod run;
 pub mod sim;

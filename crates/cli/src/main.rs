@@ -3,6 +3,7 @@
 //! Exit status: 0 done, 1 failed (one message on stderr), 2 wrong usage.
 
 mod commands;
+mod report;
 
 use std::process::ExitCode;
 
@@ -18,11 +19,15 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Run(commands::run::Arguments),
+    Check(commands::check::Arguments),
     Cell(commands::cell::Arguments),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
+        Command::Run(arguments) => commands::run::run(&arguments),
+        Command::Check(arguments) => commands::check::run(&arguments),
         Command::Cell(arguments) => commands::cell::run(&arguments),
     };
     match result {

@@ -10,7 +10,7 @@ use super::resolve::{self, Goal, ToolPose, goal};
 use super::speed;
 use super::tool_path;
 use crate::cell::Cell;
-use crate::job::{Action, ArcCondition, Frame, Location, Move, MovePath, Note, Speed, Step, Zone};
+use crate::job::{Action, ArcCondition, ArcPart, Frame, Location, Move, MovePath, Note, Speed, Step};
 use crate::record::{SegmentInfo, SegmentKind};
 
 /// What a step becomes.
@@ -70,6 +70,15 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             *self = before;
             PlanError { at: step.at.clone(), problem }
         })
+    }
+
+    /// Goes on from a step's target as if it had been reached, where the target has joints.
+    pub fn skip(&mut self, step: &Step) {
+        let Action::Move(r#move) = &step.action else { return };
+        let target = goal(&r#move.target, self.cell, self.arm, &self.joints);
+        if let Ok(Goal { joints: Ok(joints), tool, .. }) = target {
+            (self.joints, self.tool) = (joints, tool);
+        }
     }
 
     fn plan_action(&mut self, step: &Step) -> Result<Planned<N>, Problem> {
@@ -139,45 +148,48 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
     }
 
     fn plan_move(&mut self, at: &Location, r#move: &Move) -> Result<Planned<N>, Problem> {
-        let mut planned = match &r#move.path {
+        let target = |target| goal(target, self.cell, self.arm, &self.joints);
+        match &r#move.path {
             MovePath::Joint => {
-                let goal = goal(&r#move.target, self.cell, self.arm, &self.joints)?;
-                self.joint_move(at, r#move, &goal)?
+                let goal = target(&r#move.target)?;
+                self.joint_move(at, r#move, &goal)
             }
             MovePath::Linear => {
-                let goal = goal(&r#move.target, self.cell, self.arm, &self.joints)?;
+                let goal = target(&r#move.target)?;
                 self.tool = goal.tool;
                 let path = tool_path::line(&self.pose(), &goal.base_from_tcp);
-                self.path_move(at, r#move, &path, Some(&goal))?
+                self.path_move(at, r#move, &path, Some(&goal))
             }
             MovePath::Circular(arc) => {
-                let points = [&arc.points[0], &arc.points[1], &arc.points[2]];
-                let mut goals = [None; 3];
-                for (point, found) in points.into_iter().zip(&mut goals) {
-                    *found = Some(goal(point, self.cell, self.arm, &self.joints)?);
-                }
-                let [Some(first), Some(second), Some(third)] = goals else { return Ok(Planned::default()) };
-                self.tool = first.tool;
-                let poses = [first, second, third].map(|goal| goal.base_from_tcp);
-                let (path, straight) = tool_path::arc(&self.pose(), &poses, arc.part);
-                let end = if tool_path::ends_at_second(arc.part) { second } else { third };
-                let mut planned = self.path_move(at, r#move, &path, Some(&end))?;
-                if straight {
-                    planned
-                        .notices
-                        .push("the three points of the arc lie on one line: the robot goes straight".into());
-                }
-                planned
+                let [first, second, third] = &arc.points;
+                let goals = [target(first)?, target(second)?, target(third)?];
+                self.circular_move(at, r#move, &goals, arc.part)
             }
-            MovePath::Incremental { frame } => self.incremental_move(at, r#move, *frame)?,
+            MovePath::Incremental { frame } => self.incremental_move(at, r#move, *frame),
             MovePath::Spline => {
                 let reason = "spline moves are not executed yet".into();
-                return Err(Problem::Refused { text: format!("MOVS {}", r#move.target.name), reason });
+                Err(Problem::Refused { text: format!("MOVS {}", r#move.target.name), reason })
             }
-        };
-        if r#move.zone != Zone::Exact {
-            planned.notices.push(Note::StopsInZone(r#move.zone).to_string());
-            planned.notices.dedup();
+        }
+    }
+
+    /// A piece of the circle through three points; straight where they do not give a circle.
+    fn circular_move(
+        &mut self,
+        at: &Location,
+        r#move: &Move,
+        goals: &[Goal<N>; 3],
+        part: ArcPart,
+    ) -> Result<Planned<N>, Problem> {
+        self.tool = goals[2].tool;
+        let poses = goals.each_ref().map(|goal| goal.base_from_tcp);
+        let (path, straight) = tool_path::arc(&self.pose(), &poses, part);
+        let end = if part == ArcPart::First { &goals[1] } else { &goals[2] };
+        let mut planned = self.path_move(at, r#move, &path, Some(end))?;
+        if straight {
+            planned
+                .notices
+                .push("the three points of the arc lie on one line: the robot goes straight".into());
         }
         Ok(planned)
     }

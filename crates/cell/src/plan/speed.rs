@@ -7,6 +7,10 @@ use super::timing::PathLimits;
 use crate::cell::CartesianLimits;
 use crate::job::{Move, Speed};
 
+/// Least time from rest to the programmed speed, in seconds: at weld speeds the acceleration limits of the cell would be
+/// reached and left within a few cycles, for no gain in time.
+const RAMP: f64 = 0.04;
+
 /// The tag that a speed is written with.
 pub(super) fn tag(speed: &Speed) -> &'static str {
     match speed {
@@ -40,11 +44,12 @@ pub(super) fn path_limits(path: &Path, r#move: &Move, cell: &CartesianLimits) ->
             return Err(Problem::Speed { found: tag(&speed), expected: "V=, or VR= where the tool turns" });
         }
     };
+    let speed = asked.min(permitted(cell.speed, cell.rotation_speed));
     // The timing has one acceleration limit for both directions: the gentler of ACC and DEC.
     let share = r#move.acceleration.min(r#move.deceleration);
-    Ok(PathLimits {
-        speed: asked.min(permitted(cell.speed, cell.rotation_speed)),
-        acceleration: share * permitted(cell.acceleration, cell.rotation_acceleration),
-        jerk: share * permitted(cell.jerk, cell.rotation_jerk),
-    })
+    let acceleration = share * permitted(cell.acceleration, cell.rotation_acceleration);
+    let jerk = share * permitted(cell.jerk, cell.rotation_jerk);
+    // A ramp of two equal jerk phases in that time has this peak acceleration and this jerk.
+    let (gentle, gentle_jerk) = (2.0 * speed / RAMP, 4.0 * speed / (RAMP * RAMP));
+    Ok(PathLimits { speed, acceleration: acceleration.min(gentle), jerk: jerk.min(gentle_jerk) })
 }

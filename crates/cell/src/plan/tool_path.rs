@@ -22,10 +22,6 @@ pub(super) fn line(start: &Pose, end: &Pose) -> Path {
     Path::line(start, end)
 }
 
-pub(super) fn ends_at_second(part: ArcPart) -> bool {
-    part == ArcPart::First
-}
-
 /// The piece of the circle through three poses that is run from `start`, and whether it had to be straight.
 pub(super) fn arc(start: &Pose, poses: &[Pose; 3], part: ArcPart) -> (Path, bool) {
     let [first, second, third] = poses;

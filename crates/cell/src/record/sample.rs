@@ -47,6 +47,20 @@ impl RunMode {
     }
 }
 
+impl From<seamline::control::Mode> for RunMode {
+    fn from(mode: seamline::control::Mode) -> Self {
+        use seamline::control::Mode;
+        match mode {
+            Mode::Disabled => Self::Disabled,
+            Mode::Standstill => Self::Standstill,
+            Mode::Running => Self::Running,
+            Mode::Holding => Self::Holding,
+            Mode::Stopping => Self::Stopping,
+            Mode::Fault => Self::Fault,
+        }
+    }
+}
+
 /// One cycle of a run: SI units, the tool centre point in the robot frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {

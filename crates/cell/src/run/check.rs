@@ -1,0 +1,164 @@
+//! The check before any motion: the whole job, step by step, planned and thrown away.
+
+use super::error::RunError;
+use super::walk::Walk;
+use crate::cell::{Cell, UnmetWait};
+use crate::job::{Action, JobSet, Step};
+use crate::plan::{Arm, PlanningArm};
+
+/// Longest job that is checked: a job that loops for ever is checked so far, and said to.
+const DURATION_MAX: f64 = 4.0 * 3600.0;
+const STEPS_MAX: usize = 100_000;
+/// How far apart the instants are at which a WAIT is tried against the scripted inputs, in seconds.
+const WAIT_STEP: f64 = 0.01;
+/// How long a WAIT without limit is tried, in seconds.
+pub(super) const WAIT_MAX: f64 = 3600.0;
+
+/// What a check found.
+#[derive(Debug)]
+pub struct CheckReport {
+    /// In the order of the program; each line's finding once.
+    pub findings: Vec<Finding>,
+    /// Why the job cannot run; empty where it can.
+    pub errors: Vec<RunError>,
+    /// Duration at full override, in seconds.
+    pub duration: f64,
+    /// Steps walked.
+    pub steps: usize,
+    /// Moves among them.
+    pub moves: usize,
+    /// The program reads inputs, so that it cannot be planned ahead of the robot.
+    pub reads_inputs: bool,
+}
+
+/// A remark on a line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// The file.
+    pub file: String,
+    /// Line in it.
+    pub line: u32,
+    /// What kind of remark.
+    pub kind: FindingKind,
+    /// What.
+    pub text: String,
+}
+
+/// Kinds of remarks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FindingKind {
+    /// Accepted, and reported by the run.
+    Notice,
+    /// Refused by the run.
+    Error,
+}
+
+/// Walks the whole job without moving anything.
+///
+/// # Errors
+/// Where the walk cannot even begin; problems on the way are in the report.
+pub fn check<const N: usize, K: PlanningArm<N>>(
+    jobs: &JobSet,
+    cell: &Cell,
+    arm: &Arm<N, K>,
+) -> Result<CheckReport, RunError> {
+    let mut walk = Walk::new(jobs, cell, arm)?;
+    let mut report = CheckReport {
+        findings: Vec::new(),
+        errors: Vec::new(),
+        duration: 0.0,
+        steps: 0,
+        moves: 0,
+        reads_inputs: false,
+    };
+    while report.steps < STEPS_MAX && report.duration < DURATION_MAX {
+        let before = walk.inputs_read();
+        match walk.next(report.duration) {
+            Ok(None) => return Ok(report),
+            Ok(Some(step)) => {
+                report.steps += 1;
+                report.reads_inputs |= walk.inputs_read() > before;
+                report.take(&mut walk, &step);
+            }
+            Err(error) => {
+                // The program itself fails: there is no next step.
+                report.errors.push(error);
+                return Ok(report);
+            }
+        }
+    }
+    let entry = jobs.entry();
+    let text = format!("the job does not end within {:.0} h; it is checked so far", report.duration / 3600.0);
+    let (file, line) = (entry.file.to_string(), entry.line);
+    report.findings.push(Finding { file, line, kind: FindingKind::Notice, text });
+    Ok(report)
+}
+
+impl CheckReport {
+    fn take<const N: usize, K: PlanningArm<N>>(&mut self, walk: &mut Walk<'_, N, K>, step: &Step) {
+        if let Action::Move(_) = step.action {
+            self.moves += 1;
+        }
+        if let Action::Wait { condition, timeout_seconds } = &step.action {
+            self.reads_inputs = true;
+            match waiting_time(walk, condition, *timeout_seconds, self.duration) {
+                Some(seconds) => self.duration += seconds,
+                None if walk.stops_at_unmet_wait() => {
+                    self.errors.push(RunError::UnmetWait { file: walk.file(step), line: step.at.line });
+                }
+                None => {
+                    self.note(walk, step, "WAIT is never met by the scripted inputs: the run goes on at once")
+                }
+            }
+        }
+        match walk.plan(step) {
+            Ok(planned) => {
+                self.duration += planned.duration;
+                for notice in &planned.notices {
+                    self.note(walk, step, notice);
+                }
+                if let Some(text) = super::feeder::announcement(&step.action) {
+                    self.note(walk, step, &text);
+                }
+            }
+            Err(error) => {
+                if !self.errors.iter().any(|known| known.to_string() == error.to_string()) {
+                    self.errors.push(error);
+                }
+                walk.skip(step);
+            }
+        }
+    }
+
+    fn note<const N: usize, K: PlanningArm<N>>(&mut self, walk: &Walk<'_, N, K>, step: &Step, text: &str) {
+        let finding = Finding {
+            file: walk.file(step),
+            line: step.at.line,
+            kind: FindingKind::Notice,
+            text: text.to_owned(),
+        };
+        // A line in a loop is noted once.
+        if !self.findings.contains(&finding) {
+            self.findings.push(finding);
+        }
+    }
+}
+
+/// How long the program waits, by the scripted inputs; `None` where it waits in vain.
+fn waiting_time<const N: usize, K: PlanningArm<N>>(
+    walk: &mut Walk<'_, N, K>,
+    condition: &crate::job::Condition,
+    timeout: Option<f64>,
+    now: f64,
+) -> Option<f64> {
+    let limit = timeout.unwrap_or(WAIT_MAX);
+    let tries = (limit / WAIT_STEP) as usize;
+    let met = (0..=tries).map(|k| k as f64 * WAIT_STEP).find(|wait| walk.holds(condition, now + wait));
+    met.or(timeout)
+}
+
+impl<const N: usize, K: PlanningArm<N>> Walk<'_, N, K> {
+    fn stops_at_unmet_wait(&self) -> bool {
+        self.cell().io.unmet_wait == UnmetWait::Stop
+    }
+}

@@ -1,0 +1,217 @@
+//! Keeps the cycle's queue filled: steps become commands as early as the program allows.
+
+use std::collections::VecDeque;
+
+use rtrb::Producer;
+use seamline::control::Command;
+
+use super::check::WAIT_MAX;
+use super::error::RunError;
+use super::walk::Walk;
+use crate::cell::UnmetWait;
+use crate::job::{Action, Condition, Output, Step};
+use crate::plan::PlanningArm;
+use crate::record::{Event, EventKind, SegmentInfo};
+
+/// Something to report when the program passes a marker.
+#[derive(Debug, Clone)]
+pub(super) struct Announcement {
+    pub(super) marker: u32,
+    pub(super) line: u32,
+    pub(super) kind: EventKind,
+    pub(super) text: String,
+}
+
+impl Announcement {
+    pub(super) fn event(self, time: f64) -> Event {
+        Event { time, line: self.line, kind: self.kind, text: self.text }
+    }
+}
+
+/// A WAIT under way.
+#[derive(Debug)]
+struct Waiting {
+    condition: Condition,
+    timeout: Option<f64>,
+    step: Step,
+    /// When the robot arrived and the waiting began.
+    since: Option<f64>,
+}
+
+/// The planner's end of the queue.
+#[derive(Debug)]
+pub(super) struct Feeder<'a, const N: usize, K> {
+    walk: Walk<'a, N, K>,
+    queue: Producer<Command<N>>,
+    backlog: VecDeque<Command<N>>,
+    announcements: VecDeque<Announcement>,
+    /// The last marker handed out.
+    marker: u32,
+    waiting: Option<Waiting>,
+    /// The program reads inputs: each step waits until the robot has done the one before.
+    in_step: bool,
+    ended: bool,
+    /// Why the program ended early.
+    failure: Option<RunError>,
+}
+
+impl<'a, const N: usize, K: PlanningArm<N>> Feeder<'a, N, K> {
+    pub(super) fn new(walk: Walk<'a, N, K>, queue: Producer<Command<N>>, in_step: bool) -> Self {
+        Self {
+            walk,
+            queue,
+            backlog: VecDeque::new(),
+            announcements: VecDeque::new(),
+            marker: 0,
+            waiting: None,
+            in_step,
+            ended: false,
+            failure: None,
+        }
+    }
+
+    /// Fills the queue as far as program and room allow. `passed` is the last marker that the cycle has passed, `time`
+    /// the time since the start. Every new segment goes to `segment` before its commands go to the queue.
+    pub(super) fn feed(&mut self, time: f64, passed: u32, mut segment: impl FnMut(SegmentInfo)) {
+        // Ends: each turn sends commands, begins to wait, or takes a step; the queue has room for so many.
+        while self.send_backlog() && !self.ended {
+            let arrived = passed == self.marker;
+            if self.waiting.is_some() {
+                if !arrived || !self.wait_is_over(time) {
+                    return;
+                }
+                self.waiting = None;
+            } else if self.in_step && !arrived {
+                return;
+            }
+            self.take_step(time, &mut segment);
+        }
+    }
+
+    /// The reports that the program has come to.
+    pub(super) fn reached(&mut self, passed: u32) -> impl Iterator<Item = Announcement> + '_ {
+        let count =
+            self.announcements.iter().take_while(|announcement| announcement.marker <= passed).count();
+        self.announcements.drain(..count)
+    }
+
+    /// Why the program ended before its end.
+    pub(super) fn failure(&mut self) -> Option<RunError> {
+        self.failure.take()
+    }
+
+    /// Hands over what waits; false where the queue is full.
+    fn send_backlog(&mut self) -> bool {
+        while let Some(command) = self.backlog.pop_front() {
+            if let Err(rtrb::PushError::Full(command)) = self.queue.push(command) {
+                self.backlog.push_front(command);
+                return false;
+            }
+        }
+        true
+    }
+
+    fn take_step(&mut self, time: f64, segment: &mut impl FnMut(SegmentInfo)) {
+        let step = match self.walk.next(time) {
+            Ok(Some(step)) => step,
+            Ok(None) => return self.end(None),
+            Err(error) => return self.end(Some(error)),
+        };
+        let planned = match self.walk.plan(&step) {
+            Ok(planned) => planned,
+            Err(error) => return self.end(Some(error)),
+        };
+        let reported = announcement(&step.action);
+        let kind = if matches!(step.action, Action::Output(_) | Action::Message { .. }) {
+            EventKind::Output
+        } else {
+            EventKind::Notice
+        };
+        for notice in planned.notices {
+            self.announce(&step, EventKind::Notice, Some(notice));
+        }
+        self.announce(&step, kind, reported);
+        if let Some(info) = planned.segment {
+            segment(info);
+        }
+        self.backlog.extend(planned.commands);
+        match step.action.clone() {
+            Action::Wait { condition, timeout_seconds } => {
+                self.announce(&step, EventKind::Notice, None);
+                self.waiting = Some(Waiting { condition, timeout: timeout_seconds, step, since: None });
+            }
+            Action::Alarm { stops: true, .. } | Action::End => self.end(None),
+            _ => self.announce(&step, EventKind::Notice, None),
+        }
+    }
+
+    /// Sends a marker, with a text where there is something to say when it is passed.
+    fn announce(&mut self, step: &Step, kind: EventKind, text: Option<String>) {
+        self.marker += 1;
+        self.backlog.push_back(Command::Marker(self.marker));
+        if let Some(text) = text {
+            let (marker, line) = (self.marker, step.at.line);
+            self.announcements.push_back(Announcement { marker, line, kind, text });
+        }
+    }
+
+    fn end(&mut self, failure: Option<RunError>) {
+        self.backlog.push_back(Command::End);
+        self.ended = true;
+        self.failure = failure;
+        self.send_backlog();
+    }
+
+    fn wait_is_over(&mut self, time: f64) -> bool {
+        let Some(waiting) = &mut self.waiting else { return true };
+        let waited = time - *waiting.since.get_or_insert(time);
+        if self.walk.holds(&waiting.condition, time)
+            || waiting.timeout.is_some_and(|timeout| waited >= timeout)
+        {
+            return true;
+        }
+        if waiting.timeout.is_some()
+            || waited < WAIT_MAX && self.walk.may_still_hold(&waiting.condition, time)
+        {
+            return false;
+        }
+        let step = waiting.step.clone();
+        if self.walk.cell().io.unmet_wait == UnmetWait::Stop {
+            self.waiting = None;
+            let file = self.walk.file(&step);
+            self.end(Some(RunError::UnmetWait { file, line: step.at.line }));
+            return false;
+        }
+        self.announce(
+            &step,
+            EventKind::Notice,
+            Some("WAIT is never met by the scripted inputs: goes on".into()),
+        );
+        true
+    }
+}
+
+/// What a step says to the operator when the program comes to it.
+pub(super) fn announcement(action: &Action) -> Option<String> {
+    match action {
+        Action::Output(output) => Some(output_text(output)),
+        Action::Message { text } => Some(format!("message: {text}")),
+        Action::Alarm { code, text, subcode, stops } => {
+            let end = if *stops { ": the job ends" } else { "" };
+            Some(format!("alarm {code} [{subcode}] {text}{end}"))
+        }
+        Action::Pause => Some("PAUSE: no operator here, the run goes on at once".into()),
+        Action::Accepted { text, note } => Some(format!("{text}: {note}")),
+        _ => None,
+    }
+}
+
+fn output_text(output: &Output) -> String {
+    match output {
+        Output::Digital { kind, number, value } => format!("{}#({number}) = {value}", kind.name()),
+        Output::Pulse { kind, number, value, seconds } => {
+            format!("{}#({number}) = {value} for {seconds:.2} s", kind.name())
+        }
+        Output::Analog { number, volts } => format!("AO#({number}) = {volts:.2} V"),
+    }
+}

@@ -1,0 +1,170 @@
+//! The controller with its drives, and what goes in and out once per period.
+
+use rtrb::Consumer;
+use seamline::control::{
+    Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, STAGES, ServoModel,
+    StageClock,
+};
+use seamline::drive::Drive;
+use seamline::geometry::Pose;
+use seamline::safety::{Fault, WorkspaceBox};
+
+use super::clock::thread_cpu_ns;
+use crate::cell::Cell;
+use crate::plan::{Arm, PlanningArm};
+use crate::record::{MAX_JOINTS, RunMode, Sample, TimeFigures, TimeHistogram};
+
+/// Late cycles in a row after which the arm stops.
+const OVERRUNS_IN_ROW: u32 = 20;
+
+/// The cycle's end of the queue.
+#[derive(Debug)]
+struct Queue<const N: usize>(Consumer<Command<N>>);
+
+impl<const N: usize> CommandSource<N> for Queue<N> {
+    fn next(&mut self) -> Option<Command<N>> {
+        self.0.pop().ok()
+    }
+}
+
+/// Computing times of the stages and of the whole cycle.
+#[derive(Debug, Clone)]
+struct Times {
+    stages: [TimeHistogram; STAGES.len()],
+    /// By the thread's processor clock.
+    whole: TimeHistogram,
+}
+
+/// A controller, its drives and its queue. [`Machine::cycle`] neither allocates nor locks.
+#[derive(Debug)]
+pub struct Machine<const N: usize, K, D, C> {
+    cycle: Cycle<N, K>,
+    drive: D,
+    clock: C,
+    queue: Queue<N>,
+    input: CycleInput<N>,
+    period: f64,
+    count: u64,
+    last_tcp: Pose,
+    times: Times,
+}
+
+impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, C: StageClock> Machine<N, K, D, C> {
+    /// A disabled controller whose arm stands at home, on a queue that a planner fills.
+    #[must_use]
+    pub fn new(cell: &Cell, arm: &Arm<N, K>, drive: D, clock: C, queue: Consumer<Command<N>>) -> Self {
+        let flange_from_tcp = cell.tool(0).map_or_else(Pose::identity, |tool| tool.flange_from_tcp);
+        let lag = |joint| cell.simulation.servo_lag.get(joint).copied().unwrap_or(0.0);
+        let config = CycleConfig {
+            period: cell.cycle.period,
+            limits: arm.limits,
+            workspace: WorkspaceBox { low: cell.safety.workspace_min, high: cell.safety.workspace_max },
+            flange_from_tcp,
+            servo: ServoModel {
+                lag: std::array::from_fn(lag),
+                feed_forward: [cell.simulation.velocity_feed_forward; N],
+                following_error: arm.following_error,
+            },
+            overruns_in_row: OVERRUNS_IN_ROW,
+        };
+        Self {
+            cycle: Cycle::new(config, arm.kinematics.clone(), arm.home),
+            drive,
+            clock,
+            queue: Queue(queue),
+            input: CycleInput {
+                measured: Ok(arm.home),
+                speed_override: 1.0,
+                event: None,
+                fault: None,
+                late: false,
+            },
+            period: cell.cycle.period,
+            count: 0,
+            last_tcp: arm.kinematics.forward(&arm.home) * flange_from_tcp,
+            times: Times { stages: Default::default(), whole: TimeHistogram::new() },
+        }
+    }
+
+    /// Speed override from the next cycle on, 0 … 1.
+    pub fn set_override(&mut self, rate: f64) {
+        self.input.speed_override = rate;
+    }
+
+    /// An operator's event for the next cycle.
+    pub fn request(&mut self, event: Event) {
+        self.input.event = Some(event);
+    }
+
+    /// A fault from outside for the next cycle.
+    pub fn raise(&mut self, fault: Fault) {
+        self.input.fault = Some(fault);
+    }
+
+    /// Whether the next cycle begins late.
+    pub fn set_late(&mut self, late: bool) {
+        self.input.late = late;
+    }
+
+    /// The drives.
+    pub fn drive_mut(&mut self) -> &mut D {
+        &mut self.drive
+    }
+
+    /// Time between two cycles in seconds.
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// Time of the next cycle in seconds since the first.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.count as f64 * self.period
+    }
+
+    /// One period: command, exchange with the drives, and the sample of it.
+    pub fn cycle(&mut self) -> (CycleOutput<N>, Sample) {
+        let before = thread_cpu_ns();
+        let output = self.cycle.step(&self.input, &mut self.queue, &mut self.clock);
+        self.times.whole.record(thread_cpu_ns() - before);
+        for (histogram, ns) in self.times.stages.iter_mut().zip(output.status.stage_ns) {
+            histogram.record(u64::from(ns));
+        }
+        self.input.event = None;
+        self.input.fault = None;
+        self.input.measured = self.drive.exchange(&output.command, self.period);
+        let sample = self.sample(&output);
+        self.count += 1;
+        self.last_tcp = output.status.base_from_tcp;
+        (output, sample)
+    }
+
+    fn sample(&self, output: &CycleOutput<N>) -> Sample {
+        let status = &output.status;
+        let travelled = status.base_from_tcp.translation.vector - self.last_tcp.translation.vector;
+        let mut sample = Sample {
+            time: self.time(),
+            mode: RunMode::from(status.mode),
+            line: status.line,
+            segment: status.segment,
+            override_rate: status.rate,
+            tcp: status.base_from_tcp,
+            tcp_speed: travelled.norm() / self.period,
+            arc: output.arc,
+            ..Sample::at_rest()
+        };
+        let joints = N.min(MAX_JOINTS);
+        let measured = self.input.measured.unwrap_or([f64::NAN; N]);
+        sample.command[..joints].copy_from_slice(&output.command.position[..joints]);
+        sample.measured[..joints].copy_from_slice(&measured[..joints]);
+        sample
+    }
+
+    /// Computing times so far: each stage by the clock given, the whole cycle by the thread's processor clock.
+    #[must_use]
+    pub fn stage_times(&self) -> Vec<TimeFigures> {
+        let stages = self.times.stages.iter().zip(STAGES).map(|(histogram, name)| histogram.figures(name));
+        stages.chain([self.times.whole.figures("cycle")]).collect()
+    }
+}

@@ -1,0 +1,28 @@
+//! One job in one cell: checked first, then run cycle by cycle, and recorded.
+//!
+//! ```text
+//! Interpreter ─▶ Planner ─▶ queue ─▶ Cycle ─▶ drives ─▶ Recorder
+//!  └──── Walk ────┘   Feeder          └─ Machine ─┘
+//! ```
+//!
+//! [`check()`] walks the whole job without moving anything; [`run()`] does the same first and refuses a job that would
+//! fail on the way.
+
+mod check;
+mod clock;
+mod error;
+mod faults;
+mod feeder;
+mod machine;
+mod realtime;
+mod session;
+mod supervisor;
+mod walk;
+mod world;
+
+pub use check::{CheckReport, Finding, FindingKind, check};
+pub use clock::{MonotonicClock, thread_cpu_ns};
+pub use error::RunError;
+pub use faults::describe;
+pub use machine::Machine;
+pub use session::{Progress, RunOptions, RunReport, run};

@@ -1,0 +1,206 @@
+//! A run from start to end.
+
+use std::fs;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use rtrb::RingBuffer;
+use seamline::control::{CycleOutput, Event, Mode};
+use seamline::safety::Fault;
+
+use super::check::{CheckReport, check};
+use super::clock::MonotonicClock;
+use super::error::RunError;
+use super::machine::Machine;
+use super::realtime;
+use super::supervisor::Supervisor;
+use super::walk::Walk;
+use crate::cell::Cell;
+use crate::job::JobSet;
+use crate::plan::{Arm, PlanningArm};
+use crate::record::{
+    Acceptance, Findings, JointInfo, Outcome, Recorder, RunInfo, SampleSender, Summary, TimeFigures,
+};
+use crate::sim::SimulatedDrive;
+
+/// Commands between planner and cycle.
+const QUEUE: usize = 64;
+/// Time that the drives get to settle after the last command, in seconds.
+const SETTLE: f64 = 0.1;
+
+/// How a job is run.
+#[derive(Debug, Clone)]
+pub struct RunOptions {
+    /// Folder for `recording.csv`; made where it is missing.
+    pub out: PathBuf,
+    /// Speed override, above 0 to 1.
+    pub speed_override: f64,
+    /// Once per period of the clock on the wall, instead of as fast as the machine can.
+    pub realtime: bool,
+}
+
+/// Where a run stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Seconds of robot time so far.
+    pub time: f64,
+    /// Seconds it will take, as planned.
+    pub planned: f64,
+    /// Line of the job.
+    pub line: u32,
+}
+
+/// What a run left behind.
+#[derive(Debug)]
+pub struct RunReport {
+    /// Job, robot and limits.
+    pub info: RunInfo,
+    /// Figures, segments and data for plots.
+    pub findings: Findings,
+    /// The figures against their bounds.
+    pub summary: Summary,
+    /// What the operator should know about the run itself, such as a missing permission for real time.
+    pub remarks: Vec<String>,
+}
+
+/// What the supervisor needs to know of a cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Beat {
+    pub(super) time: f64,
+    pub(super) mode: Mode,
+    pub(super) at_rest: bool,
+    pub(super) fault: Option<Fault>,
+    pub(super) line: u32,
+    pub(super) marker: u32,
+}
+
+impl Beat {
+    /// Nothing follows after this cycle: the job is done, or a fault has brought the arm to rest.
+    pub(super) fn ends_run(&self) -> bool {
+        match self.mode {
+            Mode::Standstill | Mode::Disabled => true,
+            Mode::Fault => self.at_rest,
+            Mode::Running | Mode::Holding | Mode::Stopping => false,
+        }
+    }
+
+    pub(super) fn new<const N: usize>(time: f64, output: &CycleOutput<N>) -> Self {
+        let status = &output.status;
+        Self {
+            time,
+            mode: status.mode,
+            at_rest: status.at_rest,
+            fault: status.fault,
+            line: status.line,
+            marker: status.marker,
+        }
+    }
+}
+
+/// What the loop of cycles knows in the end.
+#[derive(Debug, Default)]
+pub(super) struct LoopFigures {
+    pub(super) stage_times: Vec<TimeFigures>,
+    pub(super) lateness: Option<TimeFigures>,
+    pub(super) overruns: u64,
+    pub(super) remarks: Vec<String>,
+}
+
+pub(super) type SimulatedMachine<const N: usize, K> = Machine<N, K, SimulatedDrive<N>, MonotonicClock>;
+
+/// Drives power up in the first cycle, and the job starts in the second.
+pub(super) fn start_event(cycle: u64) -> Option<Event> {
+    match cycle {
+        0 => Some(Event::Enable),
+        1 => Some(Event::Start),
+        _ => None,
+    }
+}
+
+/// Checks a job and runs it in the simulated cell; writes `recording.csv`.
+///
+/// # Errors
+/// [`RunError::Check`] where the check finds that the job cannot run (then nothing is written); the file system's own.
+/// A fault in motion is no error: it stands in the report.
+pub fn run<const N: usize, K: PlanningArm<N> + Send>(
+    jobs: &JobSet,
+    cell: &Cell,
+    arm: &Arm<N, K>,
+    options: &RunOptions,
+    mut progress: impl FnMut(Progress),
+) -> Result<RunReport, RunError> {
+    let CheckReport { errors, duration, reads_inputs, .. } = check(jobs, cell, arm)?;
+    if !errors.is_empty() {
+        return Err(RunError::Check(errors));
+    }
+    let path = options.out.join("recording.csv");
+    let file = |source| RunError::File { path: path.display().to_string(), source };
+    let drive = SimulatedDrive::from_cell(cell)?;
+    let info = run_info(jobs, cell, arm);
+    fs::create_dir_all(&options.out).map_err(file)?;
+    let (samples, recorder) = Recorder::start(&path, &info).map_err(file)?;
+    let (producer, consumer) = RingBuffer::new(QUEUE);
+    let mut machine = Machine::new(cell, arm, drive, MonotonicClock::default(), consumer);
+    machine.set_override(options.speed_override);
+    let walk = Walk::new(jobs, cell, arm)?;
+    let mut supervisor = Supervisor::new(walk, producer, reads_inputs, recorder, arm.joint_names.clone());
+    let started = Instant::now();
+    let mut watch = |beat: &Beat| progress(Progress { time: beat.time, planned: duration, line: beat.line });
+    let settle = (SETTLE / cell.cycle.period).ceil() as u64;
+    let (samples, figures) = if options.realtime {
+        realtime::run(machine, samples, &mut supervisor, settle, &mut watch)
+    } else {
+        logical(machine, samples, &mut supervisor, settle, &mut watch)
+    };
+    let wall_time = Some(started.elapsed().as_secs_f64());
+    let samples_lost = samples.lost();
+    let LoopFigures { stage_times, lateness, overruns, remarks } = figures;
+    let findings = supervisor.finish(samples).map_err(file)?;
+    let outcome = Outcome { stage_times, lateness, overruns, samples_lost, wall_time };
+    let summary = Summary::new(&info, &findings, outcome);
+    Ok(RunReport { info, findings, summary, remarks })
+}
+
+/// Cycle after cycle, as fast as the machine can: the clock is the count of cycles.
+fn logical<const N: usize, K: PlanningArm<N>>(
+    mut machine: SimulatedMachine<N, K>,
+    mut samples: SampleSender,
+    supervisor: &mut Supervisor<'_, N, K>,
+    settle: u64,
+    watch: &mut impl FnMut(&Beat),
+) -> (SampleSender, LoopFigures) {
+    let mut cycle = 0;
+    let mut left = settle;
+    supervisor.feed(0.0);
+    while left > 0 {
+        if let Some(event) = start_event(cycle) {
+            machine.request(event);
+        }
+        let time = machine.time();
+        let (output, sample) = machine.cycle();
+        let beat = Beat::new(time, &output);
+        supervisor.observe(&beat);
+        samples.push_waiting(sample);
+        watch(&beat);
+        cycle += 1;
+        left -= u64::from(cycle > 2 && beat.ends_run());
+    }
+    (samples, LoopFigures { stage_times: machine.stage_times(), ..LoopFigures::default() })
+}
+
+fn run_info<const N: usize, K>(jobs: &JobSet, cell: &Cell, arm: &Arm<N, K>) -> RunInfo {
+    let joints = (0..N).map(|joint| JointInfo {
+        name: arm.joint_names[joint].clone(),
+        position: [arm.limits.position[joint].0, arm.limits.position[joint].1],
+        velocity: arm.limits.velocity[joint],
+        acceleration: arm.limits.acceleration[joint],
+        jerk: arm.limits.jerk[joint],
+    });
+    RunInfo {
+        job: jobs.entry().name.to_string(),
+        robot: arm.name.clone(),
+        joints: joints.collect(),
+        period: cell.cycle.period,
+        acceptance: Acceptance::default(),
+    }
+}

@@ -1,0 +1,108 @@
+//! `seamline run`: the main job.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+use indicatif::{ProgressBar, ProgressStyle};
+use seamline_cell::record::Verdict;
+use seamline_cell::run::{Progress, RunOptions, RunReport, run as run_job};
+
+use super::inputs::{Inputs, load};
+use crate::report::write_report;
+
+/// Run a job in the simulated cell, cycle by cycle, and report on the motion.
+///
+/// Writes report.html, recording.csv and summary.json, and prints a summary.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:\n  seamline run examples/jobs/fillet.JBI --override 50 --out out/slow")]
+pub(crate) struct Arguments {
+    /// The job file (INFORM, .JBI).
+    job: PathBuf,
+    /// Cell file (TOML); without it the embedded default cell.
+    #[arg(long, value_name = "F.toml")]
+    cell: Option<PathBuf>,
+    /// Folder for the results [default: out/JOBNAME].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Run once per period of the clock on the wall, on a real-time thread.
+    #[arg(long)]
+    realtime: bool,
+    /// Speed override in percent: changes time, never the path.
+    #[arg(long = "override", value_name = "PCT", default_value_t = 100.0, value_parser = percent)]
+    speed_override: f64,
+}
+
+/// Above 0 to 100.
+fn percent(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value <= 100.0 => Ok(value),
+        _ => Err("expected a number above 0, at most 100".into()),
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let inputs = load(&arguments.job, arguments.cell.as_deref())?;
+    let out = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.job));
+    let options = RunOptions {
+        out: out.clone(),
+        speed_override: arguments.speed_override / 100.0,
+        realtime: arguments.realtime,
+    };
+    let report = run_with_progress(&inputs, &options)?;
+    write_results(&report, &out)?;
+    print(&report, &out)?;
+    match report.summary.verdict {
+        Verdict::Fault => bail!("the run ended with a fault: {}", fault_text(&report)),
+        Verdict::Ok | Verdict::OutOfBounds => Ok(()),
+    }
+}
+
+fn default_folder(job: &Path) -> PathBuf {
+    Path::new("out").join(job.file_stem().unwrap_or(job.as_os_str()))
+}
+
+/// A bar on a terminal, nothing elsewhere. It is drawn ten times a second; the run does not wait for it.
+fn run_with_progress(inputs: &Inputs, options: &RunOptions) -> anyhow::Result<RunReport> {
+    const UPDATES: u64 = 64;
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} s of robot time  {msg}") {
+        bar.set_style(style);
+    }
+    let mut calls = 0;
+    let progress = |at: Progress| {
+        calls += 1;
+        if calls % UPDATES == 0 {
+            bar.set_length(at.planned.ceil() as u64);
+            bar.set_position(at.time as u64);
+            bar.set_message(format!("line {}", at.line));
+        }
+    };
+    let report = run_job(&inputs.jobs, &inputs.cell, &inputs.arm, options, progress)?;
+    bar.finish_and_clear();
+    Ok(report)
+}
+
+fn write_results(report: &RunReport, out: &Path) -> anyhow::Result<()> {
+    let summary = out.join("summary.json");
+    report.summary.write(&summary).with_context(|| summary.display().to_string())?;
+    let page = out.join("report.html");
+    let findings = &report.findings;
+    write_report(&page, &report.info, &report.summary, &findings.segments, &findings.plot)
+        .with_context(|| page.display().to_string())
+}
+
+fn print(report: &RunReport, out: &Path) -> anyhow::Result<()> {
+    let mut stdout = std::io::stdout().lock();
+    for remark in &report.remarks {
+        writeln!(stdout, "note: {remark}")?;
+    }
+    write!(stdout, "{}", report.summary)?;
+    writeln!(stdout, "results: {}", out.join("report.html").display())?;
+    Ok(())
+}
+
+fn fault_text(report: &RunReport) -> String {
+    let incident = report.summary.faults.first();
+    incident.map_or_else(String::new, |i| format!("{} (at {:.3} s, line {})", i.text, i.time_s, i.line))
+}
