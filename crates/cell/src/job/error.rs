@@ -116,13 +116,15 @@ pub enum Mistake {
         max: f64,
     },
     /// Too few or too many values on a line.
-    #[error("{what} has {found} values, expected {expected}")]
+    #[error("{what} has {found} {unit}, expected {expected}")]
     WrongCount {
         /// The line's kind.
         what: &'static str,
-        /// Values found.
+        /// How many were found.
         found: usize,
-        /// Values expected.
+        /// What is counted: values, arguments, characters.
+        unit: &'static str,
+        /// How many are expected.
         expected: &'static str,
     },
     /// `///NPOS` announces another number of positions than the list has.

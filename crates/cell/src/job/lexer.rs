@@ -151,7 +151,7 @@ impl<'a> Lexer<'a> {
     /// An error at the next token: it should be a number.
     pub(super) fn bad_number(&self, expected: &'static str) -> Fault {
         let token = self.peek();
-        if !matches!(token.kind, TokenKind::Number(_)) {
+        if !matches!(token.kind, TokenKind::Number(_) | TokenKind::Symbol(b"-")) {
             return self.unexpected(expected);
         }
         let rest = self.line.get(token.start..self.end).unwrap_or_default();
@@ -221,7 +221,7 @@ mod tests {
             (17, "<>"),
             (19, "-"),
             (20, "1.5"),
-            (24, "\"\\x82\\xa0\""),
+            (24, "\\\"\\x82\\xa0\\\""),
             (29, "@"),
         ];
         assert_eq!(seen, expected.map(|(c, t)| (c, t.to_owned())));

@@ -124,7 +124,7 @@ pub enum MovePath {
     /// MOVL, and the first point of MOVC: a line.
     Linear,
     /// MOVC: along a circle.
-    Circular(Arc3),
+    Circular(Box<Arc3>),
     /// MOVS: a spline point.
     Spline,
     /// IMOV: a line by an increment in a frame.

@@ -120,9 +120,10 @@ impl Arcs {
 fn on_circle(step: Step, points: [Target; 3], part: ArcPart) -> Step {
     let Step { at, action, notes } = step;
     let action = match action {
-        Action::Move(motion) => {
-            Action::Move(Box::new(Move { path: MovePath::Circular(Arc3 { points, part }), ..*motion }))
-        }
+        Action::Move(motion) => Action::Move(Box::new(Move {
+            path: MovePath::Circular(Box::new(Arc3 { points, part })),
+            ..*motion
+        })),
         other => other,
     };
     Step { at, action, notes }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
-use super::super::check;
+use super::super::check::{self, Whole};
 use super::super::error::{JobError, JobErrors, Mistake};
 use super::super::instruction::{Flow, Instruction};
 use super::super::lexer::{Fault, Lexer, TokenKind, column, printable};
@@ -58,15 +58,20 @@ enum Section {
     Ended,
     /// Any other: kept, not read.
     Unknown,
+    /// A program without `//INST`: told once, then not read.
+    Lost,
 }
 
 /// A job as far as it has been read.
 #[derive(Debug)]
 struct Draft {
+    /// Empty where the name is wrong, which has been told.
     name: Option<(Arc<str>, u32)>,
     start: u32,
     section: Section,
     has_program: bool,
+    /// No line of the program was wrong.
+    whole: bool,
     header: Header,
     positions: PositionList,
     program: Vec<Statement>,
@@ -78,13 +83,16 @@ struct Reader {
     file: Arc<str>,
     number: u32,
     current: Option<Draft>,
+    /// Something stands before the first `/JOB`, which has been told.
+    lost: bool,
     jobs: Vec<Job>,
     errors: Vec<JobError>,
 }
 
 impl Reader {
     fn new(name: &str) -> Self {
-        Self { file: Arc::from(name), number: 0, current: None, jobs: Vec::new(), errors: Vec::new() }
+        let (jobs, errors) = (Vec::new(), Vec::new());
+        Self { file: Arc::from(name), number: 0, current: None, lost: false, jobs, errors }
     }
 
     fn error(&self, fault: Fault) -> JobError {
@@ -99,6 +107,9 @@ impl Reader {
         let line = if self.number == 1 { line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line) } else { line };
         let text = line.trim_ascii();
         if matches!(text, b"" | END_OF_FILE) {
+            if let Some(draft) = self.current.as_mut().filter(|d| d.section == Section::Arguments) {
+                draft.header.argument_comments.push(Vec::new());
+            }
             return Ok(());
         }
         if text == b"/JOB" {
@@ -107,7 +118,10 @@ impl Reader {
             return Ok(());
         }
         let number = self.number;
-        let Some(draft) = &mut self.current else { return Err(unexpected(line, "/JOB")) };
+        let Some(draft) = &mut self.current else {
+            let told = std::mem::replace(&mut self.lost, true);
+            return if told { Ok(()) } else { Err(unexpected(line, "/JOB")) };
+        };
         match draft.section {
             Section::Ended => Err(unexpected(line, "/JOB or the end of the file after END")),
             _ if text.starts_with(b"/") => draft.directive(line, number),
@@ -115,9 +129,18 @@ impl Reader {
                 draft.header.argument_comments.push(text.to_vec());
                 Ok(())
             }
+            Section::Positions if !PositionList::may_hold(text) => {
+                draft.section = Section::Lost;
+                let mistake = Mistake::MissingHeader { what: "//INST", before: "the program" };
+                Err(Fault { column: 1, mistake })
+            }
             Section::Positions => draft.positions.line(line, number),
-            Section::Program => draft.statement(line, number),
-            Section::Unknown => Ok(()),
+            Section::Program => {
+                let read = draft.statement(line, number);
+                draft.whole &= read.is_ok();
+                read
+            }
+            Section::Unknown | Section::Lost => Ok(()),
             Section::Start => Err(unexpected(line, "//NAME, //POS or //INST")),
         }
     }
@@ -133,7 +156,9 @@ impl Reader {
                 (Arc::from(""), draft.start)
             }
         };
-        if !draft.has_program {
+        if draft.section == Section::Lost {
+            // Told where the program began.
+        } else if !draft.has_program {
             errors.push((draft.start, Mistake::MissingHeader { what: "//INST", before: "the program" }));
         } else if draft.section != Section::Ended {
             let last = draft.program.last().map_or(draft.start, |s| s.line);
@@ -144,6 +169,7 @@ impl Reader {
             let error = self.error_at(line, 1, mistake);
             self.errors.push(error);
         }
+        let whole = Whole { program: draft.whole, positions: draft.positions.is_whole() };
         let mut job = Job {
             name,
             file: Arc::clone(&self.file),
@@ -154,13 +180,14 @@ impl Reader {
             labels: draft.labels,
             links: Vec::new(),
         };
-        self.errors.extend(check::resolve(&mut job));
+        self.errors.extend(check::resolve(&mut job, whole));
         self.jobs.push(job);
     }
 
     fn check_names(&mut self) {
         for (index, job) in self.jobs.iter().enumerate() {
-            let earlier = self.jobs.iter().take(index).find(|other| other.name == job.name);
+            let same = |other: &&Job| other.name == job.name && !job.name.is_empty();
+            let earlier = self.jobs.iter().take(index).find(same);
             if let Some(first) = earlier {
                 let mistake =
                     Mistake::Duplicate { what: "job", name: job.name.to_string(), first: first.line };
@@ -177,6 +204,7 @@ impl Draft {
             start,
             section: Section::Start,
             has_program: false,
+            whole: true,
             header: Header::default(),
             positions: PositionList::default(),
             program: Vec::new(),
@@ -215,23 +243,12 @@ impl Draft {
     }
 
     fn set_name(&mut self, lexer: &mut Lexer<'_>, number: u32) -> Result<(), Fault> {
-        const MAX_NAME: usize = 32;
-        let fault = lexer.unexpected("the job's name");
-        let TokenKind::Text(name) = lexer.name().kind else { return Err(fault) };
-        super::operand::expect_end(lexer, "the end of the line: a job's name has no blanks")?;
-        if name.len() > MAX_NAME {
-            let mistake = Mistake::WrongCount {
-                what: "the job's name in characters",
-                found: name.len(),
-                expected: "at most 32",
-            };
-            return Err(Fault { column: fault.column, mistake });
-        }
         if let Some((first, line)) = &self.name {
             let mistake = Mistake::Duplicate { what: "name", name: first.to_string(), first: *line };
-            return Err(Fault { column: fault.column, mistake });
+            return Err(Fault { column: lexer.column(), mistake });
         }
-        self.name = Some((Arc::from(printable(name)), number));
+        self.name = Some((Arc::from(""), number));
+        self.name = Some((Arc::from(job_name(lexer)?), number));
         Ok(())
     }
 
@@ -260,6 +277,20 @@ impl Draft {
     }
 }
 
+fn job_name(lexer: &mut Lexer<'_>) -> Result<String, Fault> {
+    const MAX_NAME: usize = 32;
+    let fault = lexer.unexpected("the job's name");
+    let TokenKind::Text(name) = lexer.name().kind else { return Err(fault) };
+    super::operand::expect_end(lexer, "the end of the line: a job's name has no blanks")?;
+    if name.len() <= MAX_NAME {
+        return Ok(printable(name));
+    }
+    let found = name.len();
+    let mistake =
+        Mistake::WrongCount { what: "the job's name", found, unit: "characters", expected: "at most 32" };
+    Err(Fault { column: fault.column, mistake })
+}
+
 /// One line of a program.
 fn statement(line: &[u8], number: u32) -> Result<Statement, Fault> {
     let start = indent(line);
@@ -277,8 +308,9 @@ fn statement(line: &[u8], number: u32) -> Result<Statement, Fault> {
     }
     if line.len() > MAX_LINE {
         let mistake = Mistake::WrongCount {
-            what: "the line in characters",
+            what: "the line",
             found: line.len(),
+            unit: "characters",
             expected: "at most 1024",
         };
         return Err(Fault { column, mistake });

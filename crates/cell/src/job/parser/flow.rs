@@ -76,7 +76,12 @@ fn call(lexer: &mut Lexer<'_>) -> Parsed<Instruction> {
     let place = lexer.column();
     let arguments = arguments(lexer)?;
     if arguments.len() > MAX_ARGUMENTS {
-        let mistake = Mistake::WrongCount { what: "the call", found: arguments.len(), expected: "at most 8" };
+        let mistake = Mistake::WrongCount {
+            what: "the call",
+            found: arguments.len(),
+            unit: "arguments",
+            expected: "at most 8",
+        };
         return Err(Fault { column: place, mistake });
     }
     Ok(Instruction::Flow(Flow::Call { target, arguments, condition: optional_condition(lexer)? }))

@@ -33,6 +33,7 @@ pub(super) fn header_line(header: &mut Header, lexer: &mut Lexer<'_>, word: &str
                 mistake: Mistake::WrongCount {
                     what: "///LVARS",
                     found,
+                    unit: "values",
                     expected: "8: B, I, D, R, S, P, BP, EX",
                 },
             })?;
@@ -139,6 +140,7 @@ impl PositionList {
                     let mistake = Mistake::WrongCount {
                         what: "///NPOS",
                         found: counts.len(),
+                        unit: "values",
                         expected: "6: C, BC, EC, P, BP, EX (or 4, in old files)",
                     };
                     return Err(Fault { column: place, mistake });
@@ -180,12 +182,19 @@ impl PositionList {
         Ok(())
     }
 
+    /// Whether a line looks like a position at all: it has an `=`, or begins with a position's name.
+    pub(super) fn may_hold(line: &[u8]) -> bool {
+        let first = Lexer::new(line, 0, line.len()).peek();
+        line.contains(&b'=') || matches!(first.kind, TokenKind::Word(word) if position_name(word).is_some())
+    }
+
     /// `C00001=…`.
     pub(super) fn line(&mut self, line: &[u8], number: u32) -> Parsed<()> {
         let parsed = self.position(line);
         self.damaged |= parsed.is_err();
         let (name, place, position) = parsed?;
         if let Some((_, first)) = self.positions.get(&name) {
+            self.damaged = true;
             let mistake = Mistake::Duplicate { what: "position", name: name.to_string(), first: *first };
             return Err(Fault { column: place, mistake });
         }
@@ -230,6 +239,11 @@ impl PositionList {
             frame,
             configuration: self.configuration,
         })
+    }
+
+    /// Whether every line was read.
+    pub(super) fn is_whole(&self) -> bool {
+        !self.damaged
     }
 
     /// The counts of `///NPOS` against the list: line and mistake.
@@ -305,7 +319,7 @@ fn check_count(
         (6, 8) => "6 (S, L, U, R, B, T), or up to 8 with further axes",
         _ => "1 to 8",
     };
-    Err(Fault { column, mistake: Mistake::WrongCount { what, found, expected } })
+    Err(Fault { column, mistake: Mistake::WrongCount { what, found, unit: "values", expected } })
 }
 
 fn configuration(lexer: &mut Lexer<'_>) -> Parsed<Configuration> {
@@ -319,7 +333,8 @@ fn configuration(lexer: &mut Lexer<'_>) -> Parsed<Configuration> {
         }
     })?;
     if !(5..=24).contains(&flags.len()) {
-        let mistake = Mistake::WrongCount { what: "///RCONF", found: flags.len(), expected: "5 to 24" };
+        let mistake =
+            Mistake::WrongCount { what: "///RCONF", found: flags.len(), unit: "values", expected: "5 to 24" };
         return Err(Fault { column: place, mistake });
     }
     Ok(Configuration::from_flags(&flags))
