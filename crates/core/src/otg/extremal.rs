@@ -62,6 +62,8 @@ pub(super) struct Family {
     start: f64,
     /// Parameters between which the island lies, if there is one.
     island: Option<(f64, f64)>,
+    /// Displacements closer than this are one: rounding.
+    resolution: f64,
     /// The problem was reversed in time to have C ≥ 0: peak and valley change places.
     reversed: bool,
 }
@@ -146,6 +148,7 @@ impl Family {
             v_max,
             start: -af,
             island: None,
+            resolution: 0.0,
             reversed,
         };
         // The peak must reach a₀: x² = n² + C ≥ a₀².
@@ -158,6 +161,11 @@ impl Family {
             family.start = family.parameter(r_squared, r).max(-af);
         }
         family
+    }
+
+    /// Sets how far displacements may be off by rounding.
+    pub(super) fn with_resolution(self, resolution: f64) -> Self {
+        Self { resolution, ..self }
     }
 
     /// The parameter at which the valley takes away the velocity y = (√y)².
@@ -218,7 +226,8 @@ impl Family {
             Some((first, last)) if on_island => return self.at(e.clamp(first, last)),
             _ => self.at(e.max(self.start)),
         };
-        if extremal.w <= self.v_max {
+        // Where the acceleration stays above zero the velocity rises throughout, and w is never reached.
+        if extremal.e < 0.0 || extremal.w <= self.v_max {
             return extremal;
         }
         let mut limited = self.at_velocity_limit();
@@ -290,8 +299,13 @@ impl Family {
         if from.slope <= 0.0 {
             return None;
         }
-        let top = self.hump(from.e, last)?;
-        (self.at(top).p >= p).then(|| self.solve(p, from.e, top, 0.5 * (from.e + top)))
+        let top = self.at(self.hump(from.e, last)?);
+        if p > top.p + self.resolution {
+            return None;
+        }
+        // At the top two arrivals merge into one, and rounding must not lose both.
+        let p = p.min(top.p - self.resolution);
+        Some(self.solve(p, from.e, top.e, 0.5 * (from.e + top.e)))
     }
 
     /// Where between two parameters ≤ 0 the displacement has its first maximum.
