@@ -20,6 +20,7 @@ pub struct Ruckig {
     calculator: ruckig::Ruckig,
     input: ruckig::InputParameter,
     trajectory: ruckig::Trajectory,
+    output: ruckig::OutputParameter,
 }
 
 impl Ruckig {
@@ -28,6 +29,7 @@ impl Ruckig {
             calculator: ruckig::Ruckig::new_direct(axes, 0.001),
             input: ruckig::InputParameter::new(axes),
             trajectory: ruckig::Trajectory::new_direct(axes),
+            output: ruckig::OutputParameter::new_direct(axes),
         }
     }
 
@@ -59,6 +61,13 @@ impl Ruckig {
     pub fn run(&mut self) -> bool {
         let result = self.calculator.calculate(&mut self.input, &mut self.trajectory);
         matches!(result, ruckig::Result::Working | ruckig::Result::Finished)
+    }
+
+    /// Nanoseconds of the calculation alone, by the peer's own clock.
+    pub fn timed(&mut self) -> f64 {
+        self.calculator.reset();
+        self.calculator.update(&mut self.input, &mut self.output);
+        1000.0 * self.output.calculation_duration
     }
 
     pub fn duration(&self) -> f64 {

@@ -263,10 +263,10 @@ impl Family {
 
     /// The first motion beyond `from` on the main arc that gets as far as `p`; `from` itself gets less far.
     pub(super) fn first_reaching(&self, p: f64, from: &Extremal) -> Extremal {
-        if from.e < 0.0 && from.slope > 0.0 {
-            if let Some(extremal) = self.first_on_hump(p, from, 0.0) {
-                return extremal;
-            }
+        if from.e < 0.0
+            && let Some(extremal) = self.first_on_hump(p, from, 0.0)
+        {
+            return extremal;
         }
         let mut highest = f64::INFINITY;
         if self.v_max < f64::INFINITY {
@@ -310,7 +310,6 @@ impl Family {
 
     /// Where between two parameters ≤ 0 the displacement has its first maximum.
     fn hump(&self, first: f64, last: f64) -> Option<f64> {
-        let inside = |e: f64| (e > first && e <= last).then_some(e);
         // Peak at its limit: slope n² + n a_max/2 + v⁺ = 0, the root from above to below zero.
         let border = -sqrt((self.a_max * self.a_max - self.c).max(0.0));
         if first < border {
@@ -318,10 +317,8 @@ impl Family {
             let discriminant = half * half - self.v_last;
             if discriminant > 0.0 {
                 let n = -half - sqrt(discriminant);
-                if n <= border {
-                    if let Some(n) = inside(n) {
-                        return Some(n);
-                    }
+                if n <= border && n > first && n <= last {
+                    return Some(n);
                 }
             }
         }
@@ -332,7 +329,8 @@ impl Family {
             return None;
         }
         let s = self.c / sqrt(sqrt(discriminant) - 2.0 * v);
-        inside(0.5 * (s - self.c / s))
+        let n = 0.5 * (s - self.c / s);
+        (n > first && n <= last).then_some(n)
     }
 
     /// Where peak and valley are both at their limits the displacement is quadratic in w.
