@@ -66,6 +66,7 @@ const SAME: f64 = 4.0 * f64::EPSILON;
 
 /// The motion after the brake.
 #[derive(Debug, Clone, Copy)]
+#[allow(clippy::large_enum_variant)] // There is no heap to put the large one on, and it is the usual one.
 enum Motion {
     /// Position control with limited jerk.
     Third(ThirdOrder),
@@ -240,7 +241,9 @@ impl Axis {
                 self.with_jerk(&fixed_duration::of_arrival(third, arrival))
             }
             (Motion::Second(second), Solution::Second(cruise)) => self.with_acceleration(second, cruise),
-            (Motion::Velocity(second), Solution::Second(cruise)) => self.to_velocity(second, cruise),
+            (Motion::Velocity(second), Solution::Second(cruise)) => {
+                self.with_acceleration_ramps(second, cruise)
+            }
             (Motion::Only(t), Solution::Only) => self.only(*t),
             _ => Profile::ending_at(self.target, self.order),
         }
@@ -254,7 +257,7 @@ impl Axis {
                 self.with_jerk(&fixed_duration::between(third, t, span))
             }
             (Motion::Second(second), _) => self.with_acceleration(second, &second.between(t)),
-            (Motion::Velocity(second), _) => self.to_velocity(second, &second.between(t)),
+            (Motion::Velocity(second), _) => self.with_acceleration_ramps(second, &second.between(t)),
             (Motion::Only(only), _) => self.only(*only),
             (Motion::Third(_), Reach::Other) => Profile::ending_at(self.target, self.order),
         }
@@ -336,7 +339,7 @@ impl Axis {
     }
 
     /// Velocity control: two ramps of the acceleration and a hold, or one jump if the jerk is unlimited.
-    fn to_velocity(&self, second: &SecondOrder, cruise: &Cruise) -> Profile {
+    fn with_acceleration_ramps(&self, second: &SecondOrder, cruise: &Cruise) -> Profile {
         let (mut profile, mut now) = self.after_brake();
         let ramp = |to: f64, from: f64, duration: f64| {
             let jerk = if second.rise == 0.0 { 0.0 } else { (to - from).signum() };

@@ -62,6 +62,8 @@ pub(super) struct Family {
     start: f64,
     /// Parameters between which the island lies, if there is one.
     island: Option<(f64, f64)>,
+    /// Displacements closer than this are one: rounding.
+    resolution: f64,
     /// The problem was reversed in time to have C ≥ 0: peak and valley change places.
     reversed: bool,
 }
@@ -146,6 +148,7 @@ impl Family {
             v_max,
             start: -af,
             island: None,
+            resolution: 0.0,
             reversed,
         };
         // The peak must reach a₀: x² = n² + C ≥ a₀².
@@ -158,6 +161,11 @@ impl Family {
             family.start = family.parameter(r_squared, r).max(-af);
         }
         family
+    }
+
+    /// Sets how far displacements may be off by rounding.
+    pub(super) fn with_resolution(self, resolution: f64) -> Self {
+        Self { resolution, ..self }
     }
 
     /// The parameter at which the valley takes away the velocity y = (√y)².
@@ -218,7 +226,8 @@ impl Family {
             Some((first, last)) if on_island => return self.at(e.clamp(first, last)),
             _ => self.at(e.max(self.start)),
         };
-        if extremal.w <= self.v_max {
+        // Where the acceleration stays above zero the velocity rises throughout, and w is never reached.
+        if extremal.e < 0.0 || extremal.w <= self.v_max {
             return extremal;
         }
         let mut limited = self.at_velocity_limit();
@@ -254,10 +263,10 @@ impl Family {
 
     /// The first motion beyond `from` on the main arc that gets as far as `p`; `from` itself gets less far.
     pub(super) fn first_reaching(&self, p: f64, from: &Extremal) -> Extremal {
-        if from.e < 0.0 && from.slope > 0.0 {
-            if let Some(extremal) = self.first_on_hump(p, from, 0.0) {
-                return extremal;
-            }
+        if from.e < 0.0
+            && let Some(extremal) = self.first_on_hump(p, from, 0.0)
+        {
+            return extremal;
         }
         let mut highest = f64::INFINITY;
         if self.v_max < f64::INFINITY {
@@ -290,13 +299,17 @@ impl Family {
         if from.slope <= 0.0 {
             return None;
         }
-        let top = self.hump(from.e, last)?;
-        (self.at(top).p >= p).then(|| self.solve(p, from.e, top, 0.5 * (from.e + top)))
+        let top = self.at(self.hump(from.e, last)?);
+        if p > top.p + self.resolution {
+            return None;
+        }
+        // At the top two arrivals merge into one, and rounding must not lose both.
+        let p = p.min(top.p - self.resolution);
+        Some(self.solve(p, from.e, top.e, 0.5 * (from.e + top.e)))
     }
 
     /// Where between two parameters ≤ 0 the displacement has its first maximum.
     fn hump(&self, first: f64, last: f64) -> Option<f64> {
-        let inside = |e: f64| (e > first && e <= last).then_some(e);
         // Peak at its limit: slope n² + n a_max/2 + v⁺ = 0, the root from above to below zero.
         let border = -sqrt((self.a_max * self.a_max - self.c).max(0.0));
         if first < border {
@@ -304,10 +317,8 @@ impl Family {
             let discriminant = half * half - self.v_last;
             if discriminant > 0.0 {
                 let n = -half - sqrt(discriminant);
-                if n <= border {
-                    if let Some(n) = inside(n) {
-                        return Some(n);
-                    }
+                if n <= border && n > first && n <= last {
+                    return Some(n);
                 }
             }
         }
@@ -318,7 +329,8 @@ impl Family {
             return None;
         }
         let s = self.c / sqrt(sqrt(discriminant) - 2.0 * v);
-        inside(0.5 * (s - self.c / s))
+        let n = 0.5 * (s - self.c / s);
+        (n > first && n <= last).then_some(n)
     }
 
     /// Where peak and valley are both at their limits the displacement is quadratic in w.

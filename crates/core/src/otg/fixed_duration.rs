@@ -88,12 +88,9 @@ fn extreme(shape: &Shape, sign: f64, a0: f64, af: f64) -> Pieces {
 
 /// The motion that arrives after the time `t`, given the extreme motions of that duration.
 pub(super) fn between(axis: &ThirdOrder, t: f64, span: &Span) -> Pieces {
-    if span.up.cruises() && span.down.cruises() {
-        if let Some(pieces) = cruise(&axis.problem, t, span) {
-            return pieces;
-        }
-    }
-    mixture(axis, span)
+    let cruises = span.up.cruises() && span.down.cruises();
+    let pieces = if cruises { cruise(&axis.problem, t, span) } else { None };
+    pieces.unwrap_or_else(|| mixture(axis, span))
 }
 
 /// From a velocity and acceleration to a cruise in the least time.
@@ -183,7 +180,7 @@ fn cruise(problem: &Problem, t: f64, span: &Span) -> Option<Pieces> {
         }
     }
     let rest = t - r1.duration - r2.duration;
-    if !(rest >= 0.0) {
+    if rest < 0.0 {
         return None;
     }
     let mut pieces = Pieces::new();

@@ -15,6 +15,7 @@
 //! | `line` | phase synchronization: one scalar problem along the line |
 //! | `synchronize` | the instant at which all axes can arrive |
 //! | `profile`, `extrema`, `trajectory` | the answer |
+//! | `generator` | the answer one cycle at a time |
 //!
 //! Units: any, as long as all of one axis agree; time in seconds. The answer does not depend on them: no tolerance has a unit.
 //!
@@ -26,6 +27,7 @@ mod error;
 mod extrema;
 mod extremal;
 mod fixed_duration;
+mod generator;
 mod input;
 mod line;
 mod profile;
@@ -37,6 +39,7 @@ mod validate;
 
 pub use error::{Error, Quantity};
 pub use extrema::PositionExtrema;
+pub use generator::{Generator, Output, Status};
 pub use input::{Control, Input, Limits, State, Synchronization};
 pub use profile::{MAX_PHASES, Order, Phase, Profile};
 pub use trajectory::{Sample, Trajectory};

@@ -61,7 +61,9 @@ impl ThirdOrder {
             + problem.a0 * problem.a0
             + problem.af * problem.af
             + start.x * start.x;
-        Self { problem, up, down, start, resolution: resolution + ROUNDING * terms * start.t }
+        let resolution = resolution + ROUNDING * terms * start.t;
+        let (up, down) = (up.with_resolution(resolution), down.with_resolution(resolution));
+        Self { problem, up, down, start, resolution }
     }
 
     /// The first arrival at or after the time `from`, at which the axis cannot arrive (or `from` is 0).

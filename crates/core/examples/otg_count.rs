@@ -1,0 +1,33 @@
+//! Calculations for an instruction counter:
+//! `cargo build --release --example otg_count --features std`, then
+//! `valgrind --tool=callgrind --toggle-collect='*count::calculations*' target/release/examples/otg_count`,
+//! and the instructions reported divided by 2000 are those of one calculation with 6 axes.
+
+#[path = "../tests/otg_support/mod.rs"]
+mod otg_support;
+
+use otg_support::cases::{Distribution, random_input};
+use otg_support::random::Random;
+use seamline::otg::{Input, calculate};
+
+mod count {
+    use super::{Input, calculate};
+
+    /// What is counted, and nothing else.
+    #[inline(never)]
+    pub(super) fn calculations(inputs: &[Input<6>]) -> f64 {
+        inputs.iter().map(|input| calculate(input).map_or(0.0, |t| t.duration())).sum()
+    }
+}
+
+fn main() {
+    let mut random = Random(2026);
+    let mut inputs = Vec::new();
+    while inputs.len() < 2000 {
+        let input: Input<6> = random_input(&mut random, Distribution::PeerTest);
+        if input.limits.velocity_min == input.limits.velocity_max.map(|v| -v) {
+            inputs.push(input);
+        }
+    }
+    println!("sum of the durations: {}", count::calculations(&inputs));
+}
