@@ -3,6 +3,10 @@
 // A test may panic, and so may what it calls.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod chain;
+mod differential;
 mod joint_jet;
+mod scara;
 mod spherical_wrist;
+mod structure;
 mod support;
