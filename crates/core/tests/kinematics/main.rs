@@ -5,6 +5,7 @@
 
 mod chain;
 mod differential;
+mod golden;
 mod joint_jet;
 mod scara;
 mod spherical_wrist;
