@@ -1,0 +1,103 @@
+//! A million cycles of the whole machine without one allocation.
+#![allow(unsafe_code, reason = "a global allocator cannot be written otherwise; it only counts")]
+
+mod machine;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell as Flag;
+
+use machine::{Ar2010, move_to};
+use rtrb::RingBuffer;
+use seamline::control::{Command, Event, Mode};
+use seamline_cell::cell::Cell;
+use seamline_cell::job::{MovePath, Speed};
+use seamline_cell::plan::{Arm, Planner};
+use seamline_cell::run::{Machine, MonotonicClock};
+use seamline_cell::sim::SimulatedDrive;
+
+thread_local! {
+    static ARMED: Flag<bool> = const { Flag::new(false) };
+    static COUNT: Flag<u64> = const { Flag::new(0) };
+}
+
+/// The system's allocator, counting while the thread is armed.
+struct Counting;
+
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        if ARMED.get() {
+            COUNT.set(COUNT.get() + 1);
+        }
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        if ARMED.get() {
+            COUNT.set(COUNT.get() + 1);
+        }
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+const CYCLES: u64 = 1_000_000;
+const ENDS: [[f64; 6]; 2] = [[0.0, 0.2, -0.2, 0.1, -1.2, 0.3], [0.35, 0.35, -0.1, 0.3, -1.0, 0.1]];
+
+/// Joint moves and lines to and fro, slow and fast, dwells and the arc: more than a million cycles of it.
+fn commands(cell: &Cell, arm: &Ar2010) -> Vec<Command<6>> {
+    let mut planner = Planner::new(arm, cell, arm.home).unwrap();
+    let mut all = Vec::new();
+    let mut planned = 0.0;
+    for k in 0.. {
+        let joints = &ENDS[(k % 2) as usize];
+        let step = match k % 3 {
+            0 => move_to(k, MovePath::Joint, Speed::JointPercent(5.0), arm, joints),
+            1 => move_to(k, MovePath::Linear, Speed::Linear { mm_s: 5.0 }, arm, joints),
+            _ => move_to(k, MovePath::Linear, Speed::Linear { mm_s: 800.0 }, arm, joints),
+        };
+        let step = planner.plan(&step).unwrap();
+        planned += step.duration + 0.05;
+        all.push(Command::Arc { on: k % 2 == 0 });
+        all.extend(step.commands);
+        all.push(Command::Dwell { line: k, segment: k, duration: 0.05 });
+        if planned > 1.1 * CYCLES as f64 * cell.cycle.period {
+            return all;
+        }
+    }
+    all
+}
+
+#[test]
+fn a_million_cycles_allocate_nothing() {
+    let cell = Cell::default_cell().unwrap();
+    let arm = Arm::from_cell(&cell).unwrap();
+    let commands = commands(&cell, &arm);
+    let (mut producer, consumer) = RingBuffer::new(commands.len());
+    commands.into_iter().for_each(|command| producer.push(command).unwrap());
+    let drive = SimulatedDrive::<6>::from_cell(&cell).unwrap();
+    let mut machine = Machine::new(&cell, &arm, drive, MonotonicClock::default(), consumer);
+    machine.request(Event::Enable);
+    machine.cycle();
+    machine.request(Event::Start);
+    let mut modes = [0_u64; 2];
+    ARMED.set(true);
+    for k in 0..CYCLES {
+        match k % 20_000 {
+            5_000 => machine.set_override(0.3),
+            6_000 => machine.set_override(1.0),
+            15_000 => machine.request(Event::Hold),
+            15_500 => machine.request(Event::Resume),
+            _ => {}
+        }
+        let (output, _) = machine.cycle();
+        modes[usize::from(output.status.mode == Mode::Running)] += 1;
+    }
+    ARMED.set(false);
+    assert_eq!(COUNT.get(), 0, "allocations and releases in {CYCLES} cycles");
+    // It did run, pause and go on.
+    assert!(modes[1] > 900_000 && modes[0] > 20_000, "{modes:?}");
+    let times = machine.stage_times();
+    println!("computing time of a cycle, µs: {:?}", times.last());
+}
