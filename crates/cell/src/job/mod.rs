@@ -35,7 +35,7 @@ mod walk;
 mod world;
 
 pub use condition::{Condition, Side};
-pub use disposition::{Disposition, disposition, nearest_instruction};
+pub use disposition::{Disposition, disposition};
 pub use error::{JobError, JobErrors, LoadError, Mistake, Nearest};
 pub use expression::{
     Expression, Index, Node, Operator, SignalKind, SignalReference, Variable, VariableKind,

@@ -4,4 +4,5 @@ mod forms;
 mod mistakes;
 mod mutation;
 mod run;
+mod samples;
 mod support;

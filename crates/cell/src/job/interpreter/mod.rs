@@ -15,7 +15,7 @@ use self::arcs::{Arcs, Raw};
 use self::moves::Speeds;
 use self::outputs::Outputs;
 use self::variables::{Value, Variables};
-use super::disposition::{Disposition, disposition, nearest_instruction};
+use super::disposition::{Disposition, disposition};
 use super::error::{JobError, Mistake};
 use super::expression::VariableKind;
 use super::instruction::{Instruction, Interpolation, Weld};
@@ -162,7 +162,9 @@ impl Interpreter {
         }
         self.go_to(index + 1);
         let outcome = match disposition(&statement.instruction) {
-            Disposition::Refused(reason) => refused(statement, reason).into(),
+            Disposition::Refused(reason) => {
+                Action::Unsupported { text: statement.text.clone(), reason: reason.into_owned() }.into()
+            }
             Disposition::Accepted(note) if is_reported_only(&statement.instruction) => {
                 Action::Accepted { text: statement.text.clone(), note }.into()
             }
@@ -227,17 +229,6 @@ impl Interpreter {
 /// Accepted without anything to execute.
 fn is_reported_only(instruction: &Instruction) -> bool {
     matches!(instruction, Instruction::Other { .. } | Instruction::Weld(Weld::WeaveOff))
-}
-
-fn refused(statement: &Statement, reason: &'static str) -> Action {
-    let mut reason = reason.to_owned();
-    if let Instruction::Other { word } = &statement.instruction {
-        let nearest = nearest_instruction(word);
-        if nearest.0.as_ref().is_some_and(|n| n != word) {
-            reason.push_str(&nearest.to_string());
-        }
-    }
-    Action::Unsupported { text: statement.text.clone(), reason }
 }
 
 /// Whether the world moves on while this is done. A wait whose condition holds already does not.
