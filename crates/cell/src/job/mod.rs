@@ -53,8 +53,8 @@ pub use position::{
 pub use program::{Header, Job, JobFile, Statement};
 pub use set::JobSet;
 pub use step::{
-    Action, Arc3, ArcCondition, ArcPart, LinearSpeedUnit, Location, Move, MovePath, Note, Output, Speed,
-    SpeedOrigin, Step, Target, Zone,
+    Action, ArcCondition, ArcPart, CircularArc, LinearSpeedUnit, Location, Move, MovePath, Note, Output,
+    Speed, SpeedOrigin, Step, Target, Zone,
 };
 pub use world::World;
 

@@ -229,13 +229,14 @@ MOVL C00003 V=12 PL=0";
     let seen: Vec<(u32, Speed, SpeedOrigin)> =
         moves(program).into_iter().map(|(line, m, _)| (line, m.speed, m.speed_origin)).collect();
     let linear = |mm_s| Speed::Linear { mm_s };
+    let at = |line| Location { job: "TEST".into(), line };
     assert_eq!(
         seen,
         [
             (33, linear(211.7), SpeedOrigin::Written),
-            (34, linear(211.7), SpeedOrigin::LastMove { line: 33 }),
-            (36, linear(50.0), SpeedOrigin::SpeedInstruction { line: 35 }),
-            (37, Speed::JointPercent(25.0), SpeedOrigin::SpeedInstruction { line: 35 }),
+            (34, linear(211.7), SpeedOrigin::LastMove(at(33))),
+            (36, linear(50.0), SpeedOrigin::SpeedInstruction(at(35))),
+            (37, Speed::JointPercent(25.0), SpeedOrigin::SpeedInstruction(at(35))),
             (38, Speed::Rotation { deg_s: 30.0 }, SpeedOrigin::Written),
             (40, linear(8.0), SpeedOrigin::ArcCondition),
             (41, linear(9.0), SpeedOrigin::Written),
@@ -246,8 +247,8 @@ MOVL C00003 V=12 PL=0";
     assert_eq!(linear(12.0).metres_per_second(), Some(0.012));
     let notes = |line: u32| moves(program).into_iter().find(|(l, ..)| *l == line).unwrap().2;
     assert_eq!(notes(33), []);
-    assert_eq!(notes(34)[0].to_string(), "V is missing, taken from the move in line 33");
-    assert_eq!(notes(37)[0].to_string(), "VJ is missing, taken from SPEED in line 35");
+    assert_eq!(notes(34)[0].to_string(), "V is missing, taken from the move in TEST line 33");
+    assert_eq!(notes(37)[0].to_string(), "VJ is missing, taken from SPEED in TEST line 35");
     assert_eq!(
         notes(45)[0].to_string(),
         "V=12 is an integer, read as mm/s; the cell file sets the unit of V"

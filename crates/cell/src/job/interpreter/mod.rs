@@ -7,13 +7,14 @@ mod flow;
 mod moves;
 mod outputs;
 mod process;
+mod speed;
 mod variables;
 
 use std::sync::Arc;
 
 use self::arcs::{Arcs, Raw};
-use self::moves::Speeds;
 use self::outputs::Outputs;
+use self::speed::Speeds;
 use self::variables::{Value, Variables};
 use super::disposition::{Disposition, disposition};
 use super::error::{JobError, Mistake};
@@ -180,7 +181,7 @@ impl Interpreter {
         if takes_time(&action, world) {
             self.idle = 0;
         }
-        let at = Location { job: Arc::clone(&job.name), line: statement.line };
+        let at = location(&job, statement);
         Ok(Some(Raw { step: Step { at, action, notes }, circular, fixed_point }))
     }
 
@@ -196,7 +197,7 @@ impl Interpreter {
                 Ok(Outcome::Nothing)
             }
             Instruction::Move(step) => {
-                let (action, notes) = self.motion(job, index, statement.column, step, world)?;
+                let (action, notes) = self.motion(job, index, statement, step, world)?;
                 Ok(if step.interpolation == Interpolation::Circular {
                     Outcome::Circular(action, notes, step.fixed_point)
                 } else {
@@ -204,7 +205,7 @@ impl Interpreter {
                 })
             }
             Instruction::Speed(tags) => {
-                self.set_speeds(tags, statement.line, world).map(|()| Outcome::Nothing)
+                self.set_speeds(tags, &location(job, statement), world).map(|()| Outcome::Nothing)
             }
             Instruction::Flow(flow) => self.flow(job, index, statement.column, flow, world),
             Instruction::Data(data) => self.data(data, world),
@@ -224,6 +225,10 @@ impl Interpreter {
             call.next = statement;
         }
     }
+}
+
+fn location(job: &Job, statement: &Statement) -> Location {
+    Location { job: Arc::clone(&job.name), line: statement.line }
 }
 
 /// Accepted without anything to execute.

@@ -4,6 +4,7 @@
 //! program that begins with a word that is not known is kept as [`Instruction::Other`] and fails nothing.
 
 mod data;
+mod expression;
 mod file;
 mod flow;
 mod header;
