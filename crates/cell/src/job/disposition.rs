@@ -34,6 +34,7 @@ const STRINGS: Disposition = refused("string functions are not built");
 const CELL_DATA: Disposition = refused("registers, flags, parameters and condition files are not kept");
 const MEMO: Disposition = refused("root-pass memory is not built");
 const RAMP: Disposition = refused("ramps of the arc's values are not built");
+const GROUPS: Disposition = refused("base axes, stations and second robots are not built");
 const OPERATOR: Disposition = refused("it asks the operator for a value");
 const CHOSEN: Disposition =
     refused("jobs and labels that a value chooses, and jobs in another frame, are not built");
@@ -130,6 +131,10 @@ fn of_other(word: &str) -> Disposition {
     if let Some((_, known)) = OTHERS.iter().find(|(name, _)| *name == word) {
         return known.clone();
     }
+    // A move of a second group on a line of its own.
+    if word.starts_with('+') {
+        return GROUPS;
+    }
     let known = OTHERS.iter().map(|(word, _)| *word).chain(INSTRUCTIONS.iter().copied());
     let nearest = nearest(word, known);
     Disposition::Refused(Cow::Owned(format!("this instruction is not known{nearest}")))
@@ -139,7 +144,7 @@ fn of_move(step: &MoveInstruction) -> Disposition {
     if step.coordinated {
         refused("coordinated motion with a station is not built")
     } else if step.target.is_none() || !step.external.is_empty() || !step.others.is_empty() {
-        refused("base axes, stations and second robots are not built")
+        GROUPS
     } else if step.interpolation == Interpolation::Spline {
         refused("splines are not built")
     } else if step.until.is_some() {

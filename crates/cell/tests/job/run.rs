@@ -106,7 +106,7 @@ fn values_outside_their_range_and_impossible_operations_end_the_run() {
         ("MOVL C00001 V=I000 PL=0", "33:15: V is 0, expected 0.01 to 10000"),
         ("SET B000 9\nMOVL C00001 V=1.0 PL=B000", "34:22: PL is 9, expected 0 to 8"),
         ("GETARG LB000 IARG#(1)", "33:20: the call passes 0 arguments, but the job reads argument 1"),
-        ("GETS B000 $RV", "33:6: $RV: the last call returned no value; it is not available"),
+        ("GETS B000 $RV", "33:6: $RV is empty: the last call returned no value"),
         ("GETS B000 $PX000", "33:6: B000 holds no position, expected a position in pulses"),
         ("FOR I000=1 TO 3 STEP=B000\nNEXT I000", "33:22: found a step of 0, expected a step that counts"),
         ("*A\nJUMP *A", "34:1: 100000 instructions ran without one that takes time: an endless loop?"),
