@@ -82,7 +82,8 @@ impl<'a> Linker<'a> {
 
     fn push(&mut self, open: Open<'a>) -> Result<(), Mistake> {
         self.open.push(open);
-        if self.open.len() > MAX_DEPTH { Err(Mistake::TooDeep { limit: MAX_DEPTH }) } else { Ok(()) }
+        // Told once, at the first block that is too deep.
+        if self.open.len() == MAX_DEPTH + 1 { Err(Mistake::TooDeep { limit: MAX_DEPTH }) } else { Ok(()) }
     }
 
     fn branch(

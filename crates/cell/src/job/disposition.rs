@@ -1,6 +1,7 @@
 //! What a run does with each instruction: one table for `check` and `run`.
 
-use super::error::Nearest;
+use std::borrow::Cow;
+
 use super::expression::{Expression, Node};
 use super::instruction::{Data, Instruction, Interpolation, Io, MoveInstruction, Weld};
 use super::names::nearest;
@@ -8,32 +9,38 @@ use super::parser::INSTRUCTIONS;
 use super::walk;
 
 /// What a run does with an instruction.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Disposition {
     /// It is executed as the controller's maker describes it.
     Executed,
     /// It is accepted and reported, with what is done instead.
     Accepted(&'static str),
-    /// A run ends before it, for this reason.
-    Refused(&'static str),
+    /// A run ends before it, for this reason; it names the nearest known instruction where the word is not known.
+    Refused(Cow<'static, str>),
 }
 
-use Disposition::{Accepted, Executed, Refused};
+use Disposition::{Accepted, Executed};
+
+/// Refused for a reason that is always the same.
+const fn refused(reason: &'static str) -> Disposition {
+    Disposition::Refused(Cow::Borrowed(reason))
+}
 
 const REPORTED: Disposition = Accepted("reported with its time");
 const INPUTS: Disposition = Accepted("inputs come from the cell's script or policy");
-const SHIFT: Disposition = Refused("position shifts are not built");
-const FRAMES: Disposition = Refused("user frames come from the cell file and are not changed by jobs");
-const STRINGS: Disposition = Refused("string functions are not built");
-const CELL_DATA: Disposition = Refused("registers, flags, parameters and condition files are not kept");
-const MEMO: Disposition = Refused("root-pass memory is not built");
-const RAMP: Disposition = Refused("ramps of the arc's values are not built");
-const OPERATOR: Disposition = Refused("it asks the operator for a value");
+const SHIFT: Disposition = refused("position shifts are not built");
+const FRAMES: Disposition = refused("user frames come from the cell file and are not changed by jobs");
+const STRINGS: Disposition = refused("string functions are not built");
+const CELL_DATA: Disposition = refused("registers, flags, parameters and condition files are not kept");
+const MEMO: Disposition = refused("root-pass memory is not built");
+const RAMP: Disposition = refused("ramps of the arc's values are not built");
+const GROUPS: Disposition = refused("base axes, stations and second robots are not built");
+const OPERATOR: Disposition = refused("it asks the operator for a value");
 const CHOSEN: Disposition =
-    Refused("jobs and labels that a value chooses, and jobs in another frame, are not built");
-const WORK: Disposition = Refused("it drives a tool that this cell does not have");
+    refused("jobs and labels that a value chooses, and jobs in another frame, are not built");
+const WORK: Disposition = refused("it drives a tool that this cell does not have");
 const SYSTEM_VARIABLE: Disposition =
-    Refused("it reads a system variable, flag or register that is not there");
+    refused("it reads a system variable, flag or register that is not there");
 
 /// Instructions that are known by name only.
 const OTHERS: &[(&str, Disposition)] = &[
@@ -51,14 +58,14 @@ const OTHERS: &[(&str, Disposition)] = &[
     ("CHR$", STRINGS),
     ("CLEAR", REPORTED),
     ("CLS", REPORTED),
-    ("COMARCOF", Refused("seam tracking through the arc is not built")),
-    ("COMARCON", Refused("seam tracking through the arc is not built")),
+    ("COMARCOF", refused("seam tracking through the arc is not built")),
+    ("COMARCON", refused("seam tracking through the arc is not built")),
     ("CWAIT", Accepted("no instruction runs ahead of a move")),
     ("DI", Accepted("there are no interrupt jobs")),
     ("DIALOG", OPERATOR),
     ("EI", Accepted("there are no interrupt jobs")),
     ("GETFILE", CELL_DATA),
-    ("GETPOS", Refused("positions of other steps are not read")),
+    ("GETPOS", refused("positions of other steps are not read")),
     ("GETPRM", CELL_DATA),
     ("GETREG", CELL_DATA),
     ("GUNCL", WORK),
@@ -69,7 +76,7 @@ const OTHERS: &[(&str, Disposition)] = &[
     ("JUMP", CHOSEN),
     ("LATESTJOB", Accepted("jobs do not change while they run")),
     ("LEN", STRINGS),
-    ("MACRO1", Refused("it runs a macro of the maker or integrator")),
+    ("MACRO1", refused("it runs a macro of the maker or integrator")),
     ("MEMOF", MEMO),
     ("MEMON", MEMO),
     ("MFRAME", FRAMES),
@@ -120,29 +127,30 @@ pub fn disposition(instruction: &Instruction) -> Disposition {
     }
 }
 
-/// The nearest known instruction for a word that is not known.
-#[must_use]
-pub fn nearest_instruction(word: &str) -> Nearest {
-    let known = OTHERS.iter().map(|(word, _)| *word).chain(INSTRUCTIONS.iter().copied());
-    nearest(word, known)
-}
-
 fn of_other(word: &str) -> Disposition {
-    let known = OTHERS.iter().find(|(name, _)| *name == word);
-    known.map_or(Refused("this instruction is not known"), |(_, disposition)| *disposition)
+    if let Some((_, known)) = OTHERS.iter().find(|(name, _)| *name == word) {
+        return known.clone();
+    }
+    // A move of a second group on a line of its own.
+    if word.starts_with('+') {
+        return GROUPS;
+    }
+    let known = OTHERS.iter().map(|(word, _)| *word).chain(INSTRUCTIONS.iter().copied());
+    let nearest = nearest(word, known);
+    Disposition::Refused(Cow::Owned(format!("this instruction is not known{nearest}")))
 }
 
 fn of_move(step: &MoveInstruction) -> Disposition {
     if step.coordinated {
-        Refused("coordinated motion with a station is not built")
+        refused("coordinated motion with a station is not built")
     } else if step.target.is_none() || !step.external.is_empty() || !step.others.is_empty() {
-        Refused("base axes, stations and second robots are not built")
+        GROUPS
     } else if step.interpolation == Interpolation::Spline {
-        Refused("splines are not built")
+        refused("splines are not built")
     } else if step.until.is_some() {
-        Refused("moves that an input ends are not built")
+        refused("moves that an input ends are not built")
     } else if !step.other_tags.is_empty() {
-        Refused("a tag of this move would change the motion and is not built")
+        refused("a tag of this move would change the motion and is not built")
     } else if step.no_wait {
         Accepted("the next instruction waits for the end of the move")
     } else if step.corner_radius.is_some() || step.continuous || !is_zero(step.position_level.as_ref()) {
@@ -168,7 +176,7 @@ fn of_data(data: &Data) -> Disposition {
 
 fn of_weld(weld: &Weld) -> Disposition {
     match weld {
-        Weld::WeaveOn(_) => Refused("weaving is not built"),
+        Weld::WeaveOn(_) => refused("weaving is not built"),
         Weld::WeaveOff => Accepted("no weave is on"),
         Weld::ArcOn(tags) | Weld::ArcOff(tags) | Weld::ArcSet(tags) if tags.other_tags.is_empty() => Executed,
         Weld::ArcOn(_) | Weld::ArcOff(_) | Weld::ArcSet(_) => {

@@ -269,6 +269,9 @@ pub enum Mistake {
         /// Arguments of the call.
         passed: usize,
     },
+    /// `$RV` is read, but the last call returned nothing.
+    #[error("$RV is empty: the last call returned no value")]
+    NoReturnValue,
     /// Too many jobs called within each other.
     #[error("CALL nested more than {limit} deep")]
     CallDepth {

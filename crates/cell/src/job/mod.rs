@@ -35,7 +35,7 @@ mod walk;
 mod world;
 
 pub use condition::{Condition, Side};
-pub use disposition::{Disposition, disposition, nearest_instruction};
+pub use disposition::{Disposition, disposition};
 pub use error::{JobError, JobErrors, LoadError, Mistake, Nearest};
 pub use expression::{
     Expression, Index, Node, Operator, SignalKind, SignalReference, Variable, VariableKind,
@@ -53,8 +53,8 @@ pub use position::{
 pub use program::{Header, Job, JobFile, Statement};
 pub use set::JobSet;
 pub use step::{
-    Action, Arc3, ArcCondition, ArcPart, LinearSpeedUnit, Location, Move, MovePath, Note, Output, Speed,
-    SpeedOrigin, Step, Target, Zone,
+    Action, ArcCondition, ArcPart, CircularArc, LinearSpeedUnit, Location, Move, MovePath, Note, Output,
+    Speed, SpeedOrigin, Step, Target, Zone,
 };
 pub use world::World;
 

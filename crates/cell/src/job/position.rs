@@ -153,7 +153,7 @@ pub enum Coordinates {
     Pulses(Vec<i32>),
     /// Millimetres and degrees.
     Rectangular(Rectangular),
-    /// Axis angles in degrees (stations).
+    /// Axis values: degrees of a station, millimetres of a track.
     Angles(Vec<f64>),
 }
 
@@ -164,7 +164,7 @@ impl Coordinates {
         match self {
             Self::Pulses(_) => "a position in pulses",
             Self::Rectangular(_) => "a rectangular position",
-            Self::Angles(_) => "a position in axis angles",
+            Self::Angles(_) => "a position in axis values",
         }
     }
 }
@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn pulses_turn_to_radians_and_back() {
-        let per_degree = [1341.380_023, -1907.674_052];
+        let per_degree = [1341.380023, -1907.674052];
         let joints = joints_from_pulses(&[-49_439, 115_900, 7], &per_degree).unwrap();
         assert!((joints[0].to_degrees() + 36.856_818).abs() < 1e-6);
         assert!((joints[1].to_degrees() + 60.754_614).abs() < 1e-6);

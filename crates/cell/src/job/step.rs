@@ -124,7 +124,7 @@ pub enum MovePath {
     /// MOVL, and the first point of MOVC: a line.
     Linear,
     /// MOVC: along a circle.
-    Circular(Box<Arc3>),
+    Circular(Box<CircularArc>),
     /// MOVS: a spline point.
     Spline,
     /// IMOV: a line by an increment in a frame.
@@ -136,7 +136,7 @@ pub enum MovePath {
 
 /// A piece of the circle through three points. Where they are collinear, the piece is straight.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Arc3 {
+pub struct CircularArc {
     /// The three points, in the order in which they are passed.
     pub points: [Target; 3],
     /// Which piece of it.
@@ -197,22 +197,16 @@ impl Speed {
 }
 
 /// Which rule supplied a speed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum SpeedOrigin {
     /// It stands in the line.
     Written,
-    /// The last SPEED instruction, in this line of its job.
-    SpeedInstruction {
-        /// The line.
-        line: u32,
-    },
+    /// The last SPEED instruction.
+    SpeedInstruction(Location),
     /// The arc's condition, between ARCON and ARCOF.
     ArcCondition,
-    /// The last move that had one, in this line of its job.
-    LastMove {
-        /// The line.
-        line: u32,
-    },
+    /// The last move of the same sort that had one.
+    LastMove(Location),
 }
 
 /// How the end point of a move is passed.
@@ -325,9 +319,9 @@ impl fmt::Display for SpeedOrigin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Written => write!(f, "the line itself"),
-            Self::SpeedInstruction { line } => write!(f, "SPEED in line {line}"),
+            Self::SpeedInstruction(at) => write!(f, "SPEED in {at}"),
             Self::ArcCondition => write!(f, "the arc's condition"),
-            Self::LastMove { line } => write!(f, "the move in line {line}"),
+            Self::LastMove(at) => write!(f, "the move in {at}"),
         }
     }
 }

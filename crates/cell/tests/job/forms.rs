@@ -67,7 +67,7 @@ const FORMS: &[(&str, &str, char)] = &[
     ("SMOVL C00000 V=10.0  +MOVJ EC00000", "SMOVL+", 'r'),
     ("SMOVC C00000 V=10.0", "SMOVC", 'r'),
     ("MOVL LP001 V=3.4 SRCH RIN#(3)=ON DIS=20.0", "MOVL", 'r'),
-    ("+MOVJ EC00000 VJ=10.00", "Other +MOVJ EC00000 VJ=10.00", 'r'),
+    ("+MOVJ EC00000 VJ=10.00", "Other +MOVJ", 'r'),
     ("SPEED VJ=50.00 V=276.0 VR=30.0", "Speed", 'e'),
     ("SPEED VJ=I003 V=I002", "Speed", 'e'),
     // Flow.

@@ -69,7 +69,7 @@ fn damaged_jobs_are_read_or_refused() {
         ran += usize::from(survives(&bytes));
     }
     // Enough of them still run for the interpreter to be tried too.
-    assert!(ran > 1000, "{ran}");
+    assert!(ran > 500, "{ran}");
 }
 
 /// Words in any order, as instructions: 8,000 programs of up to six lines.

@@ -106,7 +106,7 @@ fn values_outside_their_range_and_impossible_operations_end_the_run() {
         ("MOVL C00001 V=I000 PL=0", "33:15: V is 0, expected 0.01 to 10000"),
         ("SET B000 9\nMOVL C00001 V=1.0 PL=B000", "34:22: PL is 9, expected 0 to 8"),
         ("GETARG LB000 IARG#(1)", "33:20: the call passes 0 arguments, but the job reads argument 1"),
-        ("GETS B000 $RV", "33:6: $RV: the last call returned no value; it is not available"),
+        ("GETS B000 $RV", "33:6: $RV is empty: the last call returned no value"),
         ("GETS B000 $PX000", "33:6: B000 holds no position, expected a position in pulses"),
         ("FOR I000=1 TO 3 STEP=B000\nNEXT I000", "33:22: found a step of 0, expected a step that counts"),
         ("*A\nJUMP *A", "34:1: 100000 instructions ran without one that takes time: an endless loop?"),
@@ -229,13 +229,14 @@ MOVL C00003 V=12 PL=0";
     let seen: Vec<(u32, Speed, SpeedOrigin)> =
         moves(program).into_iter().map(|(line, m, _)| (line, m.speed, m.speed_origin)).collect();
     let linear = |mm_s| Speed::Linear { mm_s };
+    let at = |line| Location { job: "TEST".into(), line };
     assert_eq!(
         seen,
         [
             (33, linear(211.7), SpeedOrigin::Written),
-            (34, linear(211.7), SpeedOrigin::LastMove { line: 33 }),
-            (36, linear(50.0), SpeedOrigin::SpeedInstruction { line: 35 }),
-            (37, Speed::JointPercent(25.0), SpeedOrigin::SpeedInstruction { line: 35 }),
+            (34, linear(211.7), SpeedOrigin::LastMove(at(33))),
+            (36, linear(50.0), SpeedOrigin::SpeedInstruction(at(35))),
+            (37, Speed::JointPercent(25.0), SpeedOrigin::SpeedInstruction(at(35))),
             (38, Speed::Rotation { deg_s: 30.0 }, SpeedOrigin::Written),
             (40, linear(8.0), SpeedOrigin::ArcCondition),
             (41, linear(9.0), SpeedOrigin::Written),
@@ -246,8 +247,8 @@ MOVL C00003 V=12 PL=0";
     assert_eq!(linear(12.0).metres_per_second(), Some(0.012));
     let notes = |line: u32| moves(program).into_iter().find(|(l, ..)| *l == line).unwrap().2;
     assert_eq!(notes(33), []);
-    assert_eq!(notes(34)[0].to_string(), "V is missing, taken from the move in line 33");
-    assert_eq!(notes(37)[0].to_string(), "VJ is missing, taken from SPEED in line 35");
+    assert_eq!(notes(34)[0].to_string(), "V is missing, taken from the move in TEST line 33");
+    assert_eq!(notes(37)[0].to_string(), "VJ is missing, taken from SPEED in TEST line 35");
     assert_eq!(
         notes(45)[0].to_string(),
         "V=12 is an integer, read as mm/s; the cell file sets the unit of V"

@@ -6,7 +6,7 @@
 
 use std::collections::VecDeque;
 
-use super::super::step::{Action, Arc3, ArcPart, Move, MovePath, Note, Step, Target};
+use super::super::step::{Action, ArcPart, CircularArc, Move, MovePath, Note, Step, Target};
 
 /// Steps that may stand between the via point and the end of an arc.
 const MAX_BETWEEN: usize = 64;
@@ -121,7 +121,7 @@ fn on_circle(step: Step, points: [Target; 3], part: ArcPart) -> Step {
     let Step { at, action, notes } = step;
     let action = match action {
         Action::Move(motion) => Action::Move(Box::new(Move {
-            path: MovePath::Circular(Box::new(Arc3 { points, part })),
+            path: MovePath::Circular(Box::new(CircularArc { points, part })),
             ..*motion
         })),
         other => other,

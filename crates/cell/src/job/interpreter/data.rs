@@ -242,7 +242,7 @@ impl Interpreter {
             return match self.returned.clone() {
                 Some(Value::Number(number)) => self.store(variable, number, world),
                 Some(Value::Text(text)) => self.store_text(variable, text, world),
-                None => Err(missing("$RV: the last call returned no value; it")),
+                None => Err(Fault { column: variable.column, mistake: Mistake::NoReturnValue }),
             };
         }
         let current = world.current_position().ok_or_else(|| missing("the robot's position"))?;

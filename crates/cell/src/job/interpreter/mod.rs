@@ -7,15 +7,16 @@ mod flow;
 mod moves;
 mod outputs;
 mod process;
+mod speed;
 mod variables;
 
 use std::sync::Arc;
 
 use self::arcs::{Arcs, Raw};
-use self::moves::Speeds;
 use self::outputs::Outputs;
+use self::speed::Speeds;
 use self::variables::{Value, Variables};
-use super::disposition::{Disposition, disposition, nearest_instruction};
+use super::disposition::{Disposition, disposition};
 use super::error::{JobError, Mistake};
 use super::expression::VariableKind;
 use super::instruction::{Instruction, Interpolation, Weld};
@@ -162,7 +163,9 @@ impl Interpreter {
         }
         self.go_to(index + 1);
         let outcome = match disposition(&statement.instruction) {
-            Disposition::Refused(reason) => refused(statement, reason).into(),
+            Disposition::Refused(reason) => {
+                Action::Unsupported { text: statement.text.clone(), reason: reason.into_owned() }.into()
+            }
             Disposition::Accepted(note) if is_reported_only(&statement.instruction) => {
                 Action::Accepted { text: statement.text.clone(), note }.into()
             }
@@ -178,7 +181,7 @@ impl Interpreter {
         if takes_time(&action, world) {
             self.idle = 0;
         }
-        let at = Location { job: Arc::clone(&job.name), line: statement.line };
+        let at = location(&job, statement);
         Ok(Some(Raw { step: Step { at, action, notes }, circular, fixed_point }))
     }
 
@@ -194,7 +197,7 @@ impl Interpreter {
                 Ok(Outcome::Nothing)
             }
             Instruction::Move(step) => {
-                let (action, notes) = self.motion(job, index, statement.column, step, world)?;
+                let (action, notes) = self.motion(job, index, statement, step, world)?;
                 Ok(if step.interpolation == Interpolation::Circular {
                     Outcome::Circular(action, notes, step.fixed_point)
                 } else {
@@ -202,7 +205,7 @@ impl Interpreter {
                 })
             }
             Instruction::Speed(tags) => {
-                self.set_speeds(tags, statement.line, world).map(|()| Outcome::Nothing)
+                self.set_speeds(tags, &location(job, statement), world).map(|()| Outcome::Nothing)
             }
             Instruction::Flow(flow) => self.flow(job, index, statement.column, flow, world),
             Instruction::Data(data) => self.data(data, world),
@@ -224,20 +227,13 @@ impl Interpreter {
     }
 }
 
+fn location(job: &Job, statement: &Statement) -> Location {
+    Location { job: Arc::clone(&job.name), line: statement.line }
+}
+
 /// Accepted without anything to execute.
 fn is_reported_only(instruction: &Instruction) -> bool {
     matches!(instruction, Instruction::Other { .. } | Instruction::Weld(Weld::WeaveOff))
-}
-
-fn refused(statement: &Statement, reason: &'static str) -> Action {
-    let mut reason = reason.to_owned();
-    if let Instruction::Other { word } = &statement.instruction {
-        let nearest = nearest_instruction(word);
-        if nearest.0.as_ref().is_some_and(|n| n != word) {
-            reason.push_str(&nearest.to_string());
-        }
-    }
-    Action::Unsupported { text: statement.text.clone(), reason }
 }
 
 /// Whether the world moves on while this is done. A wait whose condition holds already does not.

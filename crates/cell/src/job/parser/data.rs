@@ -4,7 +4,7 @@ use super::super::error::Mistake;
 use super::super::expression::{Expression, Node, SignalKind, Variable, VariableKind};
 use super::super::instruction::{Arithmetic, Bitwise, Data, Function, Instruction};
 use super::super::lexer::{Fault, Lexer, TokenKind};
-use super::operand;
+use super::{expression, operand};
 
 type Parsed<T> = Result<T, Fault>;
 
@@ -47,14 +47,14 @@ fn set(lexer: &mut Lexer<'_>) -> Parsed<Instruction> {
         TokenKind::Word(word) if is_signal(word) => {
             let signal = operand::signal(lexer, "an output")?;
             operand::eat_word(lexer, &["LOGICEXP"]);
-            let value = operand::number_or_condition(lexer)?;
+            let value = expression::number_or_condition(lexer)?;
             Ok(Instruction::Data(Data::SetSignal { signal, value }))
         }
         TokenKind::Word(word) if operand::is_system(word) => Ok(Instruction::Other { word: "SET".into() }),
         _ => {
             let variable = operand::variable(lexer, VARIABLE)?;
             operand::eat_word(lexer, &["EXPRESS"]);
-            let value = operand::value_for(lexer, variable.kind)?;
+            let value = expression::value_for(lexer, variable.kind)?;
             check_fits(&variable, &value)?;
             Ok(Instruction::Data(Data::Set { variable, value }))
         }
@@ -77,7 +77,8 @@ fn clear(lexer: &mut Lexer<'_>) -> Parsed<Instruction> {
         }
         TokenKind::Word(word) if operand::is_variable(word) => {
             let variable = operand::variable(lexer, VARIABLE)?;
-            let count = if operand::eat_word(lexer, &["ALL"]) { None } else { Some(operand::number(lexer)?) };
+            let count =
+                if operand::eat_word(lexer, &["ALL"]) { None } else { Some(expression::number(lexer)?) };
             Ok(Instruction::Data(Data::Clear { variable, count }))
         }
         TokenKind::End => Err(lexer.unexpected("a variable, or STACK")),
@@ -99,7 +100,7 @@ fn arithmetic(lexer: &mut Lexer<'_>, operation: Arithmetic) -> Parsed<Data> {
         None
     };
     let kind = if element.is_some() { VariableKind::D } else { variable.kind };
-    let value = operand::value_for(lexer, kind)?;
+    let value = expression::value_for(lexer, kind)?;
     if operation == Arithmetic::Divide && matches!(value.node, Node::Number { value: 0.0, .. }) {
         return Err(Fault { column: value.column, mistake: Mistake::DivisionByZero });
     }
@@ -108,7 +109,7 @@ fn arithmetic(lexer: &mut Lexer<'_>, operation: Arithmetic) -> Parsed<Data> {
 
 fn function(lexer: &mut Lexer<'_>, function: Function) -> Parsed<Data> {
     let variable = operand::numeric_variable(lexer)?;
-    let value = operand::number(lexer)?;
+    let value = expression::number(lexer)?;
     match (function, &value.node) {
         (Function::Sqrt, Node::Number { value: v, .. }) if *v < 0.0 => {
             Err(Fault { column: value.column, mistake: Mistake::NegativeRoot { value: *v } })
@@ -123,7 +124,7 @@ fn bitwise(lexer: &mut Lexer<'_>, operation: Bitwise) -> Parsed<Data> {
     if variable.kind != VariableKind::B {
         return Err(place.unexpected("a byte variable such as B000"));
     }
-    let value = operand::number(lexer)?;
+    let value = expression::number(lexer)?;
     check_fits(&variable, &value)?;
     Ok(Data::Bitwise { operation, variable, value })
 }
@@ -134,7 +135,7 @@ fn set_element(lexer: &mut Lexer<'_>) -> Parsed<Data> {
         return Ok(Data::SetTool { variable, tool: operand::hash_expression(lexer)? });
     }
     let element = element(lexer)?;
-    Ok(Data::SetElement { variable, element, value: operand::number(lexer)? })
+    Ok(Data::SetElement { variable, element, value: expression::number(lexer)? })
 }
 
 fn get_element(lexer: &mut Lexer<'_>) -> Parsed<Data> {

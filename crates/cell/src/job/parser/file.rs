@@ -247,9 +247,10 @@ impl Draft {
             let mistake = Mistake::Duplicate { what: "name", name: first.to_string(), first: *line };
             return Err(Fault { column: lexer.column(), mistake });
         }
-        self.name = Some((Arc::from(""), number));
-        self.name = Some((Arc::from(job_name(lexer)?), number));
-        Ok(())
+        let name = job_name(lexer);
+        let kept = name.as_ref().map_or("", String::as_str);
+        self.name = Some((Arc::from(kept), number));
+        name.map(|_| ())
     }
 
     fn statement(&mut self, line: &[u8], number: u32) -> Result<(), Fault> {

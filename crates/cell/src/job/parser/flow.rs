@@ -4,7 +4,7 @@ use super::super::error::Mistake;
 use super::super::expression::{Expression, Node};
 use super::super::instruction::{Flow, Instruction, JobReference, JumpTarget};
 use super::super::lexer::{Fault, Lexer, TokenKind, column, printable};
-use super::operand;
+use super::{expression, operand};
 
 type Parsed<T> = Result<T, Fault>;
 
@@ -23,17 +23,17 @@ pub(super) fn instruction(lexer: &mut Lexer<'_>, word: &str) -> Parsed<Option<In
         "PAUSE" => Flow::Pause { condition: optional_condition(lexer)? },
         "ABORT" => Flow::Abort { condition: optional_condition(lexer)? },
         "END" => Flow::End,
-        "IFTHEN" | "IFTHENEXP" => Flow::If(operand::condition(lexer)?),
-        "ANDIF" | "ANDIFEXP" | "ANDEXP" => Flow::AndIf(operand::condition(lexer)?),
-        "ORIF" | "ORIFEXP" | "OREXP" => Flow::OrIf(operand::condition(lexer)?),
-        "ELSEIF" | "ELSEIFEXP" => Flow::ElseIf(operand::condition(lexer)?),
+        "IFTHEN" | "IFTHENEXP" => Flow::If(expression::condition(lexer)?),
+        "ANDIF" | "ANDIFEXP" | "ANDEXP" => Flow::AndIf(expression::condition(lexer)?),
+        "ORIF" | "ORIFEXP" | "OREXP" => Flow::OrIf(expression::condition(lexer)?),
+        "ELSEIF" | "ELSEIFEXP" => Flow::ElseIf(expression::condition(lexer)?),
         "ELSE" => Flow::Else,
         "ENDIF" => Flow::EndIf,
-        "WHILE" | "WHILEEXP" => Flow::While(operand::condition(lexer)?),
+        "WHILE" | "WHILEEXP" => Flow::While(expression::condition(lexer)?),
         "ENDWHILE" => Flow::EndWhile,
         "FOR" => for_loop(lexer)?,
         "NEXT" => Flow::Next(operand::counter(lexer)?),
-        "SWITCH" => Flow::Switch(operand::number_or_text(lexer)?),
+        "SWITCH" => Flow::Switch(expression::number_or_text(lexer)?),
         "CASE" => Flow::Case(cases(lexer)?),
         "DEFAULT" => Flow::Default,
         "ENDSWITCH" => Flow::EndSwitch,
@@ -131,8 +131,8 @@ fn arguments(lexer: &mut Lexer<'_>) -> Parsed<Vec<Expression>> {
 /// A number, a variable or a text.
 fn argument(lexer: &mut Lexer<'_>) -> Parsed<Expression> {
     match lexer.peek().kind {
-        TokenKind::Text(_) => operand::text(lexer),
-        TokenKind::Word(word) if operand::is_text_variable(word) => operand::text(lexer),
+        TokenKind::Text(_) => expression::text(lexer),
+        TokenKind::Word(word) if operand::is_text_variable(word) => expression::text(lexer),
         _ => operand::operand(lexer),
     }
 }
@@ -148,7 +148,7 @@ fn at_condition(lexer: &Lexer<'_>) -> bool {
 }
 
 fn optional_condition(lexer: &mut Lexer<'_>) -> Parsed<Option<Expression>> {
-    if operand::eat_word(lexer, IF_WORDS) { operand::condition(lexer).map(Some) } else { Ok(None) }
+    if operand::eat_word(lexer, IF_WORDS) { expression::condition(lexer).map(Some) } else { Ok(None) }
 }
 
 /// `FOR I000=1 TO 10 STEP=2`; the pendant's form `FOR I000 START= 1 TO 10 STEP= 2` means the same.
@@ -156,15 +156,15 @@ fn for_loop(lexer: &mut Lexer<'_>) -> Parsed<Flow> {
     let variable = operand::counter(lexer)?;
     operand::eat_word(lexer, &["START"]);
     operand::expect(lexer, b"=", "`=` and the first value")?;
-    let start = operand::number(lexer)?;
+    let start = expression::number(lexer)?;
     if !operand::eat_word(lexer, &["TO"]) {
         return Err(lexer.unexpected("TO and the last value"));
     }
     operand::eat(lexer, b"=");
-    let end = operand::number(lexer)?;
+    let end = expression::number(lexer)?;
     let step = if operand::eat_word(lexer, &["STEP"]) {
         operand::eat(lexer, b"=");
-        let step = operand::number(lexer)?;
+        let step = expression::number(lexer)?;
         if let Node::Number { value: 0.0, .. } = step.node {
             let mistake = Mistake::Unexpected { found: "a step of 0".into(), expected: "a step that counts" };
             return Err(Fault { column: step.column, mistake });
@@ -178,9 +178,9 @@ fn for_loop(lexer: &mut Lexer<'_>) -> Parsed<Flow> {
 
 fn cases(lexer: &mut Lexer<'_>) -> Parsed<Vec<Expression>> {
     operand::eat(lexer, b"=");
-    let mut values = vec![operand::number_or_text(lexer)?];
+    let mut values = vec![expression::number_or_text(lexer)?];
     while operand::eat(lexer, b",") {
-        values.push(operand::number_or_text(lexer)?);
+        values.push(expression::number_or_text(lexer)?);
     }
     Ok(values)
 }

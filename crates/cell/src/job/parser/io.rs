@@ -3,7 +3,7 @@
 use super::super::expression::SignalReference;
 use super::super::instruction::{Instruction, Io, OutputValue};
 use super::super::lexer::{Fault, Lexer, TokenKind};
-use super::operand;
+use super::{expression, operand};
 
 type Parsed<T> = Result<T, Fault>;
 
@@ -21,14 +21,14 @@ pub(super) fn instruction(lexer: &mut Lexer<'_>, word: &str) -> Parsed<Option<In
         }
         "WAIT" => {
             operand::eat_word(lexer, &["FOREXPRESS"]);
-            Io::Wait { condition: operand::condition(lexer)?, timeout: optional_time(lexer)? }
+            Io::Wait { condition: expression::condition(lexer)?, timeout: optional_time(lexer)? }
         }
         "DOUT" => {
             let signal = output(lexer)?;
             let value = if operand::eat_word(lexer, &["INVERT"]) {
                 OutputValue::Invert
             } else {
-                OutputValue::Value(operand::number(lexer)?)
+                OutputValue::Value(expression::number(lexer)?)
             };
             Io::DigitalOutput { signal, value }
         }
@@ -51,7 +51,7 @@ pub(super) fn instruction(lexer: &mut Lexer<'_>, word: &str) -> Parsed<Option<In
             operand::check_range(&value, "the output (V)", -14.0, 14.0)?;
             Io::AnalogOutput { port, value }
         }
-        "MSG" => Io::Message { text: operand::text(lexer)? },
+        "MSG" => Io::Message { text: expression::text(lexer)? },
         "SETUALM" => alarm(lexer)?,
         _ => return Ok(None),
     };
@@ -62,8 +62,8 @@ fn alarm(lexer: &mut Lexer<'_>) -> Parsed<Io> {
     let code = operand::operand(lexer)?;
     operand::check_range(&code, "the alarm code", 8000.0, 8999.0)?;
     let text = match lexer.peek().kind {
-        TokenKind::Text(_) => Some(operand::text(lexer)?),
-        TokenKind::Word(word) if operand::is_text_variable(word) => Some(operand::text(lexer)?),
+        TokenKind::Text(_) => Some(expression::text(lexer)?),
+        TokenKind::Word(word) if operand::is_text_variable(word) => Some(expression::text(lexer)?),
         _ => None,
     };
     let at_end = matches!(lexer.peek().kind, TokenKind::End | TokenKind::Word("SMODE"));

@@ -4,6 +4,7 @@
 //! program that begins with a word that is not known is kept as [`Instruction::Other`] and fails nothing.
 
 mod data;
+mod expression;
 mod file;
 mod flow;
 mod header;
@@ -95,9 +96,10 @@ fn instruction(lexer: &mut Lexer<'_>) -> Result<Instruction, Fault> {
     let word = match token.kind {
         TokenKind::Symbol(b"*") => return label(lexer),
         TokenKind::Word(word) => word,
-        TokenKind::Symbol(b"+") if matches!(lexer.peek().kind, TokenKind::Word(_)) => {
-            return Ok(Instruction::Other { word: format!("+{}", printable(lexer.rest())) });
-        }
+        TokenKind::Symbol(b"+") => match lexer.next().kind {
+            TokenKind::Word(word) => return Ok(Instruction::Other { word: format!("+{word}") }),
+            _ => return Err(start.unexpected("an instruction")),
+        },
         _ => return Err(start.unexpected("an instruction")),
     };
     let parsed = match word {

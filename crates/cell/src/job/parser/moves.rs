@@ -7,7 +7,7 @@ use super::super::instruction::{
 };
 use super::super::lexer::{Fault, Lexer, TokenKind, column, printable};
 use super::super::position::PositionKind;
-use super::operand;
+use super::{expression, operand};
 
 type Parsed<T> = Result<T, Fault>;
 
@@ -125,7 +125,7 @@ fn tag(lexer: &mut Lexer<'_>, step: &mut MoveInstruction, word: &str) -> Parsed<
         "FPT" => step.fixed_point = true,
         "UNTIL" => {
             lexer.next();
-            step.until = Some(operand::condition(lexer)?);
+            step.until = Some(expression::condition(lexer)?);
             return Ok(());
         }
         "BF" | "RF" | "TF" | "UF" | "MTF" if step.interpolation == Interpolation::Incremental => {
