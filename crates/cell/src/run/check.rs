@@ -1,6 +1,6 @@
 //! The check before any motion: the whole job, step by step, planned and thrown away.
 
-use super::error::RunError;
+use super::error::{Place, RunError};
 use super::walk::Walk;
 use crate::cell::{Cell, UnmetWait};
 use crate::job::{Action, JobSet, Step};
@@ -31,26 +31,13 @@ pub struct CheckReport {
     pub reads_inputs: bool,
 }
 
-/// A remark on a line.
+/// A remark on an instruction: accepted, and reported by the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
-    /// The file.
-    pub file: String,
-    /// Line in it.
-    pub line: u32,
-    /// What kind of remark.
-    pub kind: FindingKind,
+    /// The instruction.
+    pub at: Place,
     /// What.
     pub text: String,
-}
-
-/// Kinds of remarks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FindingKind {
-    /// Accepted, and reported by the run.
-    Notice,
-    /// Refused by the run.
-    Error,
 }
 
 /// Walks the whole job without moving anything.
@@ -89,8 +76,8 @@ pub fn check<const N: usize, K: PlanningArm<N>>(
     }
     let entry = jobs.entry();
     let text = format!("the job does not end within {:.0} h; it is checked so far", report.duration / 3600.0);
-    let (file, line) = (entry.file.to_string(), entry.line);
-    report.findings.push(Finding { file, line, kind: FindingKind::Notice, text });
+    let at = Place { file: entry.file.to_string(), line: entry.line, column: 1 };
+    report.findings.push(Finding { at, text });
     Ok(report)
 }
 
@@ -104,7 +91,7 @@ impl CheckReport {
             match waiting_time(walk, condition, *timeout_seconds, self.duration) {
                 Some(seconds) => self.duration += seconds,
                 None if walk.stops_at_unmet_wait() => {
-                    self.errors.push(RunError::UnmetWait { file: walk.file(step), line: step.at.line });
+                    self.errors.push(RunError::UnmetWait { at: walk.place(step) });
                 }
                 None => {
                     self.note(walk, step, "WAIT is never met by the scripted inputs: the run goes on at once")
@@ -131,12 +118,7 @@ impl CheckReport {
     }
 
     fn note<const N: usize, K: PlanningArm<N>>(&mut self, walk: &Walk<'_, N, K>, step: &Step, text: &str) {
-        let finding = Finding {
-            file: walk.file(step),
-            line: step.at.line,
-            kind: FindingKind::Notice,
-            text: text.to_owned(),
-        };
+        let finding = Finding { at: walk.place(step), text: text.to_owned() };
         // A line in a loop is noted once.
         if !self.findings.contains(&finding) {
             self.findings.push(finding);

@@ -1,11 +1,29 @@
 //! Why a job cannot be run, in one message.
 
+use std::fmt;
 use std::io;
 
 use thiserror::Error;
 
 use crate::job::JobError;
 use crate::plan::{ArmError, Problem};
+
+/// A place in a job file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// The file as its caller named it.
+    pub file: String,
+    /// Line, from 1.
+    pub line: u32,
+    /// Column in bytes, from 1.
+    pub column: u32,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}:{}", self.file, self.line, self.column)
+    }
+}
 
 /// Why a job cannot be checked or run.
 #[derive(Debug, Error)]
@@ -20,36 +38,26 @@ pub enum RunError {
     #[error("{0}")]
     Job(#[from] JobError),
     /// A step cannot be planned.
-    #[error("{file}:{line}: {problem}")]
+    #[error("{at}: {problem}")]
     Plan {
-        /// The job file.
-        file: String,
-        /// Line in it.
-        line: u32,
+        /// The instruction.
+        at: Place,
         /// What is wrong.
         problem: Problem,
     },
     /// An input that the cell does not let be read.
-    #[error(
-        "{file}:{line}: input {number} has no script, and the cell refuses such inputs (io.unscripted_input)"
-    )]
+    #[error("{at}: input {number} has no script, and the cell refuses such inputs (io.unscripted_input)")]
     UnscriptedInput {
-        /// The job file.
-        file: String,
-        /// Line in it.
-        line: u32,
+        /// The instruction.
+        at: Place,
         /// The input's number.
         number: u32,
     },
     /// A condition that never comes true.
-    #[error(
-        "{file}:{line}: WAIT is never met by the scripted inputs, and the cell stops there (io.unmet_wait)"
-    )]
+    #[error("{at}: WAIT is never met by the scripted inputs, and the cell stops there (io.unmet_wait)")]
     UnmetWait {
-        /// The job file.
-        file: String,
-        /// Line in it.
-        line: u32,
+        /// The instruction.
+        at: Place,
     },
     /// The whole check found problems.
     #[error("{}", lines(.0))]

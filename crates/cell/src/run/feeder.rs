@@ -178,8 +178,8 @@ impl<'a, const N: usize, K: PlanningArm<N>> Feeder<'a, N, K> {
         let step = waiting.step.clone();
         if self.walk.cell().io.unmet_wait == UnmetWait::Stop {
             self.waiting = None;
-            let file = self.walk.file(&step);
-            self.end(Some(RunError::UnmetWait { file, line: step.at.line }));
+            let at = self.walk.place(&step);
+            self.end(Some(RunError::UnmetWait { at }));
             return false;
         }
         self.announce(

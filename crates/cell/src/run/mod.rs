@@ -20,9 +20,9 @@ mod supervisor;
 mod walk;
 mod world;
 
-pub use check::{CheckReport, Finding, FindingKind, check};
+pub use check::{CheckReport, Finding, check};
 pub use clock::{MonotonicClock, thread_cpu_ns};
-pub use error::RunError;
+pub use error::{Place, RunError};
 pub use faults::describe;
 pub use machine::Machine;
 pub use session::{Progress, RunOptions, RunReport, run};

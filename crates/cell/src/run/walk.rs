@@ -1,8 +1,6 @@
 //! Interpreter and planner side by side: one step of the job, and what it becomes.
 
-use std::sync::Arc;
-
-use super::error::RunError;
+use super::error::{Place, RunError};
 use super::world::CellWorld;
 use crate::cell::{Cell, SpeedUnit};
 use crate::job::{Condition, Interpreter, JobSet, LinearSpeedUnit, SignalKind, Step, World};
@@ -24,11 +22,8 @@ impl<'a, const N: usize, K: PlanningArm<N>> Walk<'a, N, K> {
             SpeedUnit::CentimetrePerMinute => LinearSpeedUnit::CentimetrePerMinute,
         };
         let entry = jobs.entry();
-        let planner = Planner::new(arm, cell, arm.home).map_err(|problem| RunError::Plan {
-            file: entry.file.to_string(),
-            line: entry.line,
-            problem,
-        })?;
+        let at = Place { file: entry.file.to_string(), line: entry.line, column: 1 };
+        let planner = Planner::new(arm, cell, arm.home).map_err(|problem| RunError::Plan { at, problem })?;
         Ok(Self {
             jobs,
             interpreter: Interpreter::new(jobs, unit),
@@ -43,16 +38,16 @@ impl<'a, const N: usize, K: PlanningArm<N>> Walk<'a, N, K> {
         self.world.joints = *self.planner.joints();
         let step = self.interpreter.next(&mut self.world)?;
         match (self.world.refused.take(), &step) {
-            (Some(number), Some(step)) => {
-                Err(RunError::UnscriptedInput { file: self.file(step), line: step.at.line, number })
-            }
+            (Some(number), Some(step)) => Err(RunError::UnscriptedInput { at: self.place(step), number }),
             _ => Ok(step),
         }
     }
 
     /// What the step becomes; the planner stays where it was where that fails.
     pub(super) fn plan(&mut self, step: &Step) -> Result<Planned<N>, RunError> {
-        self.planner.plan(step).map_err(|PlanError { problem, .. }| self.problem(step, problem))
+        self.planner
+            .plan(step)
+            .map_err(|PlanError { problem, .. }| RunError::Plan { at: self.place(step), problem })
     }
 
     /// Goes on from the step's target as if it had been reached.
@@ -83,14 +78,14 @@ impl<'a, const N: usize, K: PlanningArm<N>> Walk<'a, N, K> {
         self.world.inputs_read
     }
 
-    /// The file that a step's job stands in.
-    pub(super) fn file(&self, step: &Step) -> String {
-        let job =
-            self.jobs.jobs().find(|job| Arc::ptr_eq(&job.name, &step.at.job) || job.name == step.at.job);
-        job.map_or_else(|| step.at.job.to_string(), |job| job.file.to_string())
-    }
-
-    fn problem(&self, step: &Step, problem: crate::plan::Problem) -> RunError {
-        RunError::Plan { file: self.file(step), line: step.at.line, problem }
+    /// Where a step's instruction stands.
+    pub(super) fn place(&self, step: &Step) -> Place {
+        let job = self.jobs.jobs().find(|job| job.name == step.at.job);
+        let statement = job.and_then(|job| job.program.iter().find(|s| s.line == step.at.line));
+        Place {
+            file: job.map_or_else(|| step.at.job.to_string(), |job| job.file.to_string()),
+            line: step.at.line,
+            column: statement.map_or(1, |statement| statement.column),
+        }
     }
 }

@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 fn print(report: &CheckReport) -> std::io::Result<()> {
     let mut stdout = std::io::stdout().lock();
     for finding in &report.findings {
-        writeln!(stdout, "{}:{}: {}", finding.file, finding.line, finding.text)?;
+        writeln!(stdout, "{}: {}", finding.at, finding.text)?;
     }
     writeln!(
         stdout,

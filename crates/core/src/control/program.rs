@@ -139,7 +139,9 @@ impl<const N: usize> Program<N> {
             Some(Command::Dwell { line, segment, duration }) => {
                 let (line, segment, duration) = (*line, *segment, *duration);
                 (self.place.line, self.place.segment) = (line, segment);
-                let left = self.dwell_left.unwrap_or(duration) - if goal > 0.0 { period } else { 0.0 };
+                // It counts from the cycle after the one in which the arm has come to rest.
+                let elapsed = if goal > 0.0 { period } else { 0.0 };
+                let left = self.dwell_left.map_or(duration, |left| left - elapsed);
                 // Half a period is as near to the duration as whole cycles can come.
                 if left > period / 2.0 {
                     self.dwell_left = Some(left);

@@ -1,0 +1,254 @@
+//! The program as a user meets it: the main job's results, and wrong files with their one message.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn seamline(arguments: &[&str]) -> Output {
+    let binary = env!("CARGO_BIN_EXE_seamline");
+    Command::new(binary).args(arguments).current_dir(root()).output().expect("the program starts")
+}
+
+/// A folder of this test's own, empty.
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).expect("a folder for results");
+    path
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("a readable path")
+}
+
+/// Runs an example job and returns its folder and summary.
+fn run_example(job: &str, extra: &[&str]) -> (PathBuf, Value) {
+    let out = folder(&format!("run-{job}{}", extra.concat()));
+    let path = format!("examples/jobs/{job}.JBI");
+    let mut arguments = vec!["run", path.as_str(), "--out", text(&out)];
+    arguments.extend(extra);
+    let output = seamline(&arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let summary = fs::read_to_string(out.join("summary.json")).expect("a summary");
+    (out, serde_json::from_str(&summary).expect("valid JSON"))
+}
+
+#[test]
+fn the_main_job_leaves_its_three_files() {
+    let (out, summary) = run_example("fillet", &[]);
+    assert_eq!(summary["verdict"], "ok");
+    assert_eq!(summary["faults"].as_array().map(Vec::len), Some(0));
+    for peak in ["joint_velocity_max", "joint_acceleration_max"] {
+        assert!(summary[peak].as_f64().is_some_and(|peak| peak <= 1.0 + 1e-6), "{peak}");
+    }
+    assert!(summary["joint_jerk_max"].as_f64().is_some_and(|peak| peak <= 1.01));
+    let recording = fs::read_to_string(out.join("recording.csv")).expect("a recording");
+    assert_eq!(recording.lines().count() as u64, summary["cycles"].as_u64().unwrap_or(0) + 1);
+    let report = fs::read_to_string(out.join("report.html")).expect("a report");
+    assert!(report.contains("FILLET") && !report.contains("src=\"http"));
+}
+
+#[test]
+fn override_changes_time_and_not_the_path() {
+    let (full, half) = (run_example("near_wrist", &[]).1, run_example("near_wrist", &["--override", "50"]).1);
+    assert_eq!(half["verdict"], "ok");
+    let duration = |summary: &Value| summary["duration_s"].as_f64().unwrap_or(0.0);
+    let settle = 0.1;
+    let ratio = (duration(&half) - settle) / (duration(&full) - settle);
+    assert!((ratio - 2.0).abs() < 0.01, "{ratio}");
+}
+
+#[test]
+fn the_same_job_twice_gives_the_same_recording() {
+    let bytes = |name: &str| {
+        let out = folder(name);
+        assert!(seamline(&["run", "examples/jobs/pulses.JBI", "--out", text(&out)]).status.success());
+        fs::read(out.join("recording.csv")).expect("a recording")
+    };
+    assert!(bytes("twice-1") == bytes("twice-2"));
+}
+
+#[test]
+fn check_names_the_slowdown_before_anything_moves() {
+    let output = seamline(&["check", "examples/jobs/near_wrist.JBI"]);
+    assert!(output.status.success());
+    let stdout = String::from_utf8_lossy(&output.stdout);
+    assert!(stdout.contains("near_wrist.JBI:23:1: slows from 150.0 to"), "{stdout}");
+    assert!(stdout.contains("joint R is at its speed limit"), "{stdout}");
+}
+
+#[test]
+fn the_printed_cell_is_the_default_cell() {
+    let printed = seamline(&["cell", "--print"]).stdout;
+    let path = folder("cell").join("cell.toml");
+    fs::write(&path, printed).expect("a cell file");
+    assert!(seamline(&["check", "examples/jobs/fillet.JBI", "--cell", text(&path)]).status.success());
+}
+
+#[test]
+fn wrong_usage_is_exit_status_two() {
+    for arguments in [
+        &["run"][..],
+        &["nonsense"],
+        &["run", "a.JBI", "--override", "0"],
+        &["run", "a.JBI", "--override", "x"],
+    ] {
+        assert_eq!(seamline(arguments).status.code(), Some(2), "{arguments:?}");
+    }
+}
+
+#[test]
+fn every_subcommand_has_help_with_an_example() {
+    for command in ["run", "check", "cell"] {
+        let help = String::from_utf8_lossy(&seamline(&[command, "--help"]).stdout).into_owned();
+        assert!(help.contains("Example:\n  seamline"), "{command}: {help}");
+    }
+}
+
+const JOB: &str = "\
+/JOB
+//NAME A
+//POS
+///NPOS 3,0,0,0,0,0
+///TOOL 0
+///POSTYPE PULSE
+///PULSE
+C00000=0,0,0,0,-49000,0
+C00001=10000,10000,0,0,-49000,0
+///POSTYPE ROBOT
+///RECTAN
+///RCONF 1,0,0,0,0,0
+C00002=1100.000,100.000,0.000,180.0000,0.0000,90.0000
+//INST
+///DATE 2026/01/15 09:00
+///ATTR SC,RW
+///GROUP1 RB1
+NOP
+MOVJ C00000 VJ=50.00 PL=0
+MOVL C00001 V=50.0 PL=0
+ARCON ASF#(1)
+MOVL C00002 V=10.0 PL=0
+ARCOF AEF#(1)
+TIMER T=0.10
+END
+";
+
+/// What is replaced by what, and what the message must say after the file's name.
+const WRONG_JOBS: &[(&str, &str, &str)] = &[
+    ("C00000=0,0,0,0,-49000,0", "C00000=0,0,0,x,-49000,0", ":8:14: "),
+    ("C00000=0,0,0,0,-49000,0", "C00000=0,0,0,0,-49000", ":8:"),
+    ("C00001=10000", "C00000=10000", ":9:"),
+    ("///NPOS 3,0,0,0,0,0", "///NPOS 2,0,0,0,0,0", ":4:"),
+    ("///NPOS 3,0,0,0,0,0", "///NPOS 3,a,0,0,0,0", ":4:"),
+    ("///RCONF 1,0,0,0,0,0", "///RCONF 1,0,7,0,0,0", ":12:"),
+    ("180.0000,0.0000,90.0000", "180.0000,0.0000", ":13:"),
+    ("C00002=1100.000", "C00002=1100.000.1", ":13:"),
+    ("VJ=50.00", "VJ=150.00", ":19:16: VJ (%) is 150, expected 0.01 to 100"),
+    ("VJ=50.00", "VJ=abc", ":19:"),
+    ("V=50.0", "V=-3.0", ":20:"),
+    ("PL=0\nMOVL C00001", "PL=9\nMOVL C00001", ":19:"),
+    ("MOVL C00001", "MOVL C00007", ":20:"),
+    ("TIMER T=0.10", "TIMER T=", ":24:"),
+    ("TIMER T=0.10", "JUMP *NOWHERE", ":24:"),
+    ("TIMER T=0.10", "CALL JOB:MISSING", ":24:"),
+    ("TIMER T=0.10", "SET B000 300", ":24:"),
+    ("TIMER T=0.10", "DIV I000 0", ":24:"),
+    ("TIMER T=0.10", "ENDIF", ":24:"),
+    ("TIMER T=0.10", "*L\nJUMP *L", ":2"),
+    ("TIMER T=0.10\nEND\n", "TIMER T=0.10\n", ":"),
+    ("/JOB\n", "", ":1:"),
+    ("//INST\n", "", ":"),
+    ("ARCON ASF#(1)", "ARCON ASF#(99)", ":21:1: ASF#(99) is not in the cell file; expected [[arc_start]]"),
+    ("///TOOL 0", "///TOOL 9", ":19:1: tool 9 is not in the cell file; expected a [[tool]]"),
+    ("C00002=1100.000", "C00002=5100.000", ":22:1: at "),
+    ("C00001=10000,", "C00001=900000,", ":20:1: C00001: joint S at 670.95 deg is outside -179.0 … 179.0 deg"),
+    ("TIMER T=0.10", "MOVS C00000 V=10.0 PL=0", ":24:1: `MOVS"),
+    ("TIMER T=0.10", "WVON WEV#(1)", ":24:1: `WVON"),
+    ("TIMER T=0.10", "SMOVL C00000 V=10.0", ":24:1: `SMOVL"),
+    ("TIMER T=0.10", "FROBNICATE C00000", ":24:1: `FROBNICATE"),
+];
+
+/// A cell file, and what the message must say after the file's name.
+const WRONG_CELLS: &[(&str, &str)] = &[
+    ("robot = 3", ":1:"),
+    ("[robot]\nmodel = \"kuka\"", ":2:9: robot.model"),
+    ("[robot]\nmodel = \"ur5e\"", "robot"),
+    ("[robotics]\nmodel = \"ar2010\"", ":1:"),
+    ("[[robot.joint]]\nnumber = 3\nvelocity_deg_s = -1.0", ":3:"),
+    ("[[robot.joint]]\nnumber = 3\nvelocity_deg_s = \"fast\"", ":3:"),
+    ("[[robot.joint]]\nnumber = 12", ":2:"),
+    ("[[robot.joint]]\nnumber = 3\nvelocity_rad_s = 1.0", ":3:1: robot.joint[3].velocity_rad_s"),
+    ("[[robot.joint]]\nnumber = 3\nposition_min_deg = 170.0", ":3:"),
+    ("[[tool]]\nnumber = -1", ":2:"),
+    ("[[tool]]\nname = \"torch\"", ":1:"),
+    ("[cycle]\nperiod_ms = 0", ":2:"),
+    ("[cycle]\nperiod_ms = nan", ":2:"),
+    ("[cycle]\nperiod = 1", ":2:"),
+    ("[job]\nspeed_unit = \"m/s\"", ":2:"),
+    ("[job]\nposition_level_mm = [1, 2]", ":2:"),
+    ("[arc]\nrefuse_slowdown = 1", ":2:"),
+    ("[io]\nunmet_wait = \"hope\"", ":2:"),
+    ("[drive]\nbackend = \"ethercat\"", ":2:"),
+    ("[safety]\nworkspace_min_mm = [0, 0]", ":2:"),
+    ("[simulation]\nservo_lag_ms = -5.0", ":2:"),
+    ("[cycle\nperiod_ms = 1", ":1:"),
+];
+
+/// One message on stderr, exit status 1, no panic, and nothing written.
+fn assert_refused(output: &Output, out: &Path, start: &str, expected: &str) {
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{expected}: {stderr}");
+    assert!(!stderr.contains("panicked"), "{stderr}");
+    let message = stderr.strip_prefix("seamline: ").unwrap_or(&stderr);
+    assert!(message.starts_with(start), "{message:?} should begin with {start:?}");
+    assert!(message.contains(expected), "{message:?} should contain {expected:?}");
+    assert!(!out.exists(), "nothing may be written: {expected}");
+}
+
+#[test]
+fn wrong_jobs_get_one_message_and_no_report() {
+    let folder = folder("wrong-jobs");
+    for (k, (from, to, expected)) in WRONG_JOBS.iter().enumerate() {
+        assert!(JOB.contains(from), "{from:?} stands in the job");
+        let (job, out) = (folder.join(format!("w{k}.JBI")), folder.join(format!("out{k}")));
+        fs::write(&job, JOB.replacen(from, to, 1)).expect("a job file");
+        let output = seamline(&["run", text(&job), "--out", text(&out)]);
+        assert_refused(&output, &out, text(&job), expected);
+    }
+    let right = folder.join("right.JBI");
+    fs::write(&right, JOB).expect("a job file");
+    let output = seamline(&["run", text(&right), "--out", text(&folder.join("right"))]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn wrong_cells_get_one_message_and_no_report() {
+    let folder = folder("wrong-cells");
+    for (k, (toml, expected)) in WRONG_CELLS.iter().enumerate() {
+        let (cell, out) = (folder.join(format!("w{k}.toml")), folder.join(format!("out{k}")));
+        fs::write(&cell, toml).expect("a cell file");
+        let arguments = ["run", "examples/jobs/fillet.JBI", "--cell", text(&cell), "--out", text(&out)];
+        assert_refused(
+            &seamline(&arguments),
+            &out,
+            if *expected == "robot" { "" } else { text(&cell) },
+            expected,
+        );
+    }
+}
+
+#[test]
+fn missing_files_are_named() {
+    let out = folder("missing").join("out");
+    let output = seamline(&["run", "nowhere.JBI", "--out", text(&out)]);
+    assert_refused(&output, &out, "cannot read nowhere.JBI", "nowhere.JBI");
+    let output =
+        seamline(&["run", "examples/jobs/fillet.JBI", "--cell", "nowhere.toml", "--out", text(&out)]);
+    assert_refused(&output, &out, "nowhere.toml", "nowhere.toml");
+}
