@@ -8,15 +8,19 @@ mod otg_support;
 
 use otg_support::cases::{Distribution, random_input};
 use otg_support::random::Random;
-use seamline::otg::{Input, calculate};
+use seamline::otg::{Input, Trajectory, calculate_into};
 
 mod count {
-    use super::{Input, calculate};
+    use super::{Input, Trajectory, calculate_into};
 
     /// What is counted, and nothing else.
     #[inline(never)]
     pub(super) fn calculations(inputs: &[Input<6>]) -> f64 {
-        inputs.iter().map(|input| calculate(input).map_or(0.0, |t| t.duration())).sum()
+        let mut trajectory = Trajectory::default();
+        inputs
+            .iter()
+            .map(|i| calculate_into(i, &mut trajectory).map_or(0.0, |()| trajectory.duration()))
+            .sum()
     }
 }
 

@@ -30,6 +30,7 @@ mod fixed_duration;
 mod generator;
 mod input;
 mod line;
+mod number;
 mod profile;
 mod second_order;
 mod synchronize;
@@ -46,6 +47,7 @@ pub use trajectory::{Sample, Trajectory};
 
 use axis::{Axis, AxisInput};
 use line::Line;
+use number::larger;
 use synchronize::{Demand, Plan, common_duration};
 
 /// Plans the motion from the current to the target state.
@@ -54,50 +56,47 @@ use synchronize::{Demand, Plan, common_duration};
 /// [`Error`] names axis, quantity and value. Valid input has a trajectory unless a zero limit keeps the axis from its target, a line was
 /// demanded that is none, or a position limit would be passed.
 pub fn calculate<const N: usize>(input: &Input<N>) -> Result<Trajectory<N>, Error> {
+    let mut trajectory = Trajectory::default();
+    calculate_into(input, &mut trajectory)?;
+    Ok(trajectory)
+}
+
+/// As [`calculate`], into a trajectory that is there already: no large value is moved.
+///
+/// # Errors
+/// As [`calculate`]; the trajectory is then not one to be followed.
+pub fn calculate_into<const N: usize>(input: &Input<N>, trajectory: &mut Trajectory<N>) -> Result<(), Error> {
     validate::validate(input)?;
     let groups = Groups::new(input)?;
-    let mut error = None;
-    let axes: [Axis; N] = core::array::from_fn(|axis| {
-        let made = match &groups.line {
-            Some(line) if line.reference == axis => Axis::new(&line.scalar, axis),
-            _ if groups.planned[axis] => Axis::new(&AxisInput::of(input, axis), axis),
-            _ => Ok(Axis::coasting(&AxisInput::of(input, axis))),
-        };
-        made.unwrap_or_else(|e| {
-            error = error.or(Some(e));
-            Axis::coasting(&AxisInput::of(input, axis))
-        })
-    });
-    if let Some(error) = error {
-        return Err(error);
+    let mut axes = [Axis::IDLE; N];
+    let mut plans = [Plan::AT_ONCE; N];
+    for axis in 0..N {
+        let profile = &mut trajectory.profiles[axis];
+        match &groups.line {
+            Some(line) if line.reference == axis => axes[axis].set(&line.scalar, axis, profile)?,
+            _ if groups.planned[axis] => axes[axis].set(&AxisInput::of(input, axis), axis, profile)?,
+            _ => profile.begin(AxisInput::of(input, axis).current, Order::Third),
+        }
+        plans[axis].find_earliest(&axes[axis]);
     }
-    let mut plans: [Plan; N] = core::array::from_fn(|axis| Plan::new(&axes[axis]));
-    let duration_min = core::array::from_fn(|axis| plans[groups.leader(axis)].earliest);
+    trajectory.duration_min = core::array::from_fn(|axis| plans[groups.leader(axis)].earliest);
+    trajectory.synchronized = groups.modes;
 
     let demand = Demand { min: input.duration_min.unwrap_or(0.0), step: input.duration_step.unwrap_or(0.0) };
-    let mut durations = [0.0; N];
     let common = common_duration(&axes, &mut plans, &groups.together, &groups.early, &demand)?;
-    let mut duration = common;
-    for axis in 0..N {
-        durations[axis] = if groups.together[axis] {
-            common
-        } else if groups.alone[axis] {
+    trajectory.duration = common;
+    for axis in (0..N).filter(|&axis| groups.planned[axis]) {
+        if groups.alone[axis] {
             let only = core::array::from_fn(|other| other == axis);
-            let own = common_duration(&axes, &mut plans, &only, &[false; N], &demand)?;
-            duration = own.max(duration);
-            own
-        } else {
-            plans[axis].earliest
-        };
+            let duration = common_duration(&axes, &mut plans, &only, &[false; N], &demand)?;
+            trajectory.duration = larger(duration, trajectory.duration);
+        }
+        axes[axis].write(&plans[axis].solution, &mut trajectory.profiles[axis]);
     }
-    let mut profiles: [Profile; N] =
-        core::array::from_fn(|axis| plans[axis].profile(&axes[axis], durations[axis]));
     if let Some(line) = &groups.line {
-        spread(input, line, &groups.members, &mut profiles);
+        spread(input, line, &groups.members, &mut trajectory.profiles);
     }
-    let trajectory = Trajectory { profiles, duration, duration_min, synchronized: groups.modes };
-    trajectory.check_positions(input)?;
-    Ok(trajectory)
+    trajectory.check_positions(input)
 }
 
 /// Gives the axes of a line their shares of the motion along it.
