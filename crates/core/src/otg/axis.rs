@@ -147,17 +147,17 @@ impl Axis {
 
     /// The problem in units in which the jerk limit is 1.
     fn normalised(input: &AxisInput) -> Problem {
-        let j = input.jerk;
+        let unit = 1.0 / input.jerk;
         Problem {
-            displacement: (input.target.p - input.current.p) / j,
-            v0: input.current.v / j,
-            a0: input.current.a / j,
-            vf: input.target.v / j,
-            af: input.target.a / j,
-            v_max: input.v_max / j,
-            v_min: input.v_min / j,
-            a_max: input.a_max / j,
-            a_min: input.a_min / j,
+            displacement: (input.target.p - input.current.p) * unit,
+            v0: input.current.v * unit,
+            a0: input.current.a * unit,
+            vf: input.target.v * unit,
+            af: input.target.a * unit,
+            v_max: input.v_max * unit,
+            v_min: input.v_min * unit,
+            a_max: input.a_max * unit,
+            a_min: input.a_min * unit,
         }
     }
 
@@ -165,7 +165,7 @@ impl Axis {
         let mut problem = Self::normalised(input);
         self.scale = input.jerk;
         Brake { problem: &mut problem, profile, now: &mut self.start, scale: self.scale }.apply();
-        self.motion = Motion::Third(ThirdOrder::new(problem, SAME * input.coordinates / input.jerk));
+        self.motion = Motion::Third(ThirdOrder::new(problem, SAME * input.coordinates / self.scale));
     }
 
     fn set_second_order(&mut self, input: &AxisInput, profile: &mut Profile) {

@@ -3,7 +3,7 @@
 
 use super::extremal::Problem;
 use super::fixed_duration::Piece;
-use super::number::{between, larger, smaller};
+use super::number::{SIXTH, between, larger, smaller};
 use super::profile::{Point, Profile};
 use crate::math::float::sqrt;
 
@@ -25,7 +25,7 @@ impl Brake<'_> {
         let acceleration = problem.a0;
         if t > 0.0 {
             self.profile.push_forward(&Piece { duration, jerk, acceleration }, self.scale, self.now);
-            problem.displacement -= t * (problem.v0 + t * (2.0 * acceleration + a) / 6.0);
+            problem.displacement -= t * (problem.v0 + t * (2.0 * acceleration + a) * SIXTH);
             problem.v0 += 0.5 * t * (acceleration + a);
         }
         problem.a0 = a;

@@ -5,7 +5,7 @@
 //! where x or n meets its limit, and with a cruise in the middle where the velocity meets its limit. That is one family with
 //! one parameter. Its mirror image gets least far.
 
-use super::number::{between, larger, smaller};
+use super::number::{SIXTH, between, larger, smaller};
 use crate::math::float::{cbrt, sqrt};
 
 /// A problem of third order with jerk limit 1: from (0, v₀, a₀) to (displacement, v_f, a_f).
@@ -102,7 +102,10 @@ pub(super) struct Shape {
 }
 
 /// Newton's method doubles the number of good digits with each step, so that the step after one this small is exact.
-const LAST_STEP: f64 = 1e-9;
+const LAST_STEP: f64 = 1e-8;
+
+/// Displacements that differ by this fraction are one.
+const ROUNDING: f64 = f64::EPSILON;
 
 /// Most steps of the root search. Newton steps converge within 20 where the displacement is convex, which is everywhere but on a hump; there the
 /// bracket is halved where a step leaves it: 60 halvings exhaust 64-bit floats.
@@ -135,7 +138,7 @@ impl Family {
     ) -> Self {
         let v_first = v0 - 0.5 * a0 * a0;
         let v_last = vf - 0.5 * af * af;
-        let k = af * (v_last + af * af / 6.0) - a0 * (v_first + a0 * a0 / 6.0);
+        let k = af * (v_last + af * af * SIXTH) - a0 * (v_first + a0 * a0 * SIXTH);
         let mut family = Self {
             v_first,
             v_last,
@@ -379,6 +382,9 @@ impl Family {
         let mut now = self.at(larger(start, low));
         for _ in 0..MAX_STEPS {
             let excess = now.p - p;
+            if excess.abs() <= ROUNDING * p.abs() {
+                break;
+            }
             if excess > 0.0 {
                 high = now.e;
             } else {

@@ -4,7 +4,7 @@
 //! is a weighted mean of the two extreme ones, which keeps every limit that both keep.
 
 use super::extremal::{Problem, Shape};
-use super::number::{larger, smaller};
+use super::number::{SIXTH, larger, smaller};
 use super::profile::{Point, Profile};
 use super::third_order::Arrival;
 use crate::math::float::sqrt;
@@ -210,7 +210,7 @@ impl RampFrom {
             x,
             hold: t - 2.0 * x,
             duration: t - sign * a,
-            displacement: 0.5 * (v + w) * t - a * (sign * v + a * a / 6.0),
+            displacement: 0.5 * (v + w) * t - a * (sign * v + a * a * SIXTH),
         }
     }
 }
@@ -219,7 +219,7 @@ impl RampFrom {
 /// takes longer is left to the mixture, which needs none.
 const MAX_STEPS: usize = 16;
 /// As in the search for the extreme motions: the step after one this small is exact.
-const LAST_STEP: f64 = 1e-9;
+const LAST_STEP: f64 = 1e-8;
 /// Displacements that differ by this fraction of their terms are one.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 

@@ -1,5 +1,8 @@
 //! The larger and the smaller of two numbers, in one instruction each.
 
+/// A multiplication is several times as fast as a division.
+pub(super) const SIXTH: f64 = 1.0 / 6.0;
+
 /// The larger; the second if one of them is not a number. (`f64::max` takes five instructions to treat both alike.)
 #[inline]
 pub(super) fn larger(a: f64, b: f64) -> f64 {

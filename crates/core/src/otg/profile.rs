@@ -2,7 +2,7 @@
 
 use super::fixed_duration::Piece;
 use super::input::Control;
-use super::number::larger;
+use super::number::{SIXTH, larger};
 
 /// Most phases of a profile: four that bring the axis inside its limits, and thirteen of the motion proper.
 pub const MAX_PHASES: usize = 17;
@@ -30,8 +30,8 @@ impl Phase {
         let Phase { position: p, velocity: v, acceleration: a, jerk: j, duration } = *self;
         Phase {
             duration: duration - time,
-            position: p + time * (v + time * (a / 2.0 + time * (j / 6.0))),
-            velocity: v + time * (a + time * (j / 2.0)),
+            position: p + time * (v + time * (0.5 * a + time * j * SIXTH)),
+            velocity: v + time * (a + 0.5 * time * j),
             acceleration: a + time * j,
             jerk: j,
         }
@@ -116,7 +116,7 @@ impl Profile {
         let (a, j) = (piece.acceleration * scale, piece.jerk * scale);
         if t > 0.0 {
             self.push(Phase { duration: t, position: now.p, velocity: now.v, acceleration: a, jerk: j });
-            now.p += t * (now.v + t * (0.5 * a + t * (j / 6.0)));
+            now.p += t * (now.v + t * (0.5 * a + t * j * SIXTH));
             now.v += t * (a + 0.5 * t * j);
         }
     }
@@ -130,7 +130,7 @@ impl Profile {
             let t = larger(piece.duration, 0.0);
             let (a, j) = (piece.acceleration * scale, piece.jerk * scale);
             v -= t * (a + 0.5 * t * j);
-            p -= t * (v + t * (0.5 * a + t * (j / 6.0)));
+            p -= t * (v + t * (0.5 * a + t * j * SIXTH));
             *phase = Phase { duration: t, position: p, velocity: v, acceleration: a, jerk: j };
         }
         for phase in phases {

@@ -1,5 +1,6 @@
 //! All axes together: the instant at which they arrive. See `docs/otg.md`, section 9.
 
+use super::Role;
 use super::axis::{Axis, Solution};
 use super::error::Error;
 use super::number::larger;
@@ -56,24 +57,21 @@ impl Plan {
     }
 }
 
-/// The first duration at which every axis of `together` can arrive and those of `early` have arrived.
+/// The first duration at which all axes that arrive together can, and those that may arrive early have arrived.
 ///
 /// Each round moves the duration to the end of an interval in which some axis cannot arrive. An axis has two of these at most
 /// after its least duration, so that `3 N + 3` rounds are enough; with a step each round passes one too.
 pub(super) fn common_duration<const N: usize>(
     axes: &[Axis; N],
     plans: &mut [Plan; N],
-    together: &[bool; N],
-    early: &[bool; N],
+    roles: &[Role; N],
     demand: &Demand,
 ) -> Result<f64, Error> {
     let mut t = 0.0_f64;
     let mut last = 0;
-    for axis in (0..N).filter(|&axis| together[axis] || early[axis]) {
-        if plans[axis].earliest.is_nan() {
-            return Err(Error::OutOfRange { axis });
-        }
-        if plans[axis].earliest > t {
+    for axis in 0..N {
+        let counts = matches!(roles[axis], Role::Together | Role::Early);
+        if counts && (plans[axis].earliest > t || plans[axis].earliest.is_nan()) {
             (t, last) = (plans[axis].earliest, axis);
         }
     }
@@ -83,7 +81,7 @@ pub(super) fn common_duration<const N: usize>(
             break;
         }
         let mut settled = true;
-        for axis in (0..N).filter(|&axis| together[axis]) {
+        for axis in (0..N).filter(|&axis| roles[axis] == Role::Together) {
             let arrival = plans[axis].arrive(&axes[axis], t);
             if arrival > t {
                 (t, last, settled) = (arrival, axis, false);
