@@ -1,10 +1,9 @@
 //! The generator in a control loop: one cycle on at each call, computing anew only where the input changed.
 
+use super::calculate_into;
 use super::error::Error;
 use super::input::{Input, State};
-use super::profile::{Order, Point, Profile};
 use super::trajectory::{Sample, Trajectory};
-use super::{Synchronization, calculate};
 
 /// Whether the target has been reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,19 +36,8 @@ impl<const N: usize> Output<N> {
 
 impl<const N: usize> Default for Output<N> {
     fn default() -> Self {
-        let zero = [0.0; N];
-        let rest = Profile::ending_at(Point { p: 0.0, v: 0.0, a: 0.0 }, Order::Third);
-        Self {
-            sample: Sample { position: zero, velocity: zero, acceleration: zero, jerk: zero },
-            time: 0.0,
-            is_new: false,
-            trajectory: Trajectory {
-                profiles: [rest; N],
-                duration: 0.0,
-                duration_min: zero,
-                synchronized: [Synchronization::None; N],
-            },
-        }
+        let trajectory = Trajectory::default();
+        Self { sample: trajectory.at_time(0.0), time: 0.0, is_new: false, trajectory }
     }
 }
 
@@ -88,12 +76,12 @@ impl<const N: usize> Generator<N> {
     /// One cycle on: plans anew if the input is not the last one moved on by [`Output::pass_to_input`].
     ///
     /// # Errors
-    /// Those of [`calculate`]; the output is then left as it was, and the next call plans anew.
+    /// Those of [`calculate_into`]; the output then keeps its sample but not its trajectory, and the next call plans anew.
     pub fn update(&mut self, input: &Input<N>, output: &mut Output<N>) -> Result<Status, Error> {
         let is_new = self.expected.as_ref() != Some(input);
         if is_new {
             self.expected = None;
-            output.trajectory = calculate(input)?;
+            calculate_into(input, &mut output.trajectory)?;
             self.count = 0;
         }
         self.count += 1;

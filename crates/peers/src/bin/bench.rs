@@ -6,7 +6,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use seamline::otg::{Control, Input, State, Synchronization, calculate};
+use seamline::otg::{Control, Input, State, Synchronization, Trajectory, calculate_into};
 use seamline_peers::otg_support::cases::{Distribution, random_input};
 use seamline_peers::otg_support::random::Random;
 use seamline_peers::{RsRuckig, Ruckig};
@@ -41,9 +41,12 @@ fn clocked(run: impl FnOnce()) -> f64 {
 }
 
 fn bench<const N: usize>(name: &str, mut inputs: Vec<Input<N>>, passes: usize) {
-    let ours = least(&mut inputs, passes, |input| clocked(|| {
-        let _ = black_box(calculate(black_box(input)));
-    }));
+    let mut trajectory = Trajectory::default();
+    let ours = least(&mut inputs, passes, |input| {
+        clocked(|| {
+            let _ = black_box(calculate_into(black_box(input), &mut trajectory));
+        })
+    });
     let mut cpp = Ruckig::new(N);
     let cpp = least(&mut inputs, passes, |input| {
         cpp.set(input);
@@ -59,13 +62,24 @@ fn bench<const N: usize>(name: &str, mut inputs: Vec<Input<N>>, passes: usize) {
     for (peer, times) in [("C++", &cpp), ("port", &port)] {
         println!(
             "{name:32} {N} {peer:5} ours {:7.0} {:7.0} {:7.0} ns | peer {:7.0} {:7.0} {:7.0} ns | ratio {:.3} {:.3} {:.3}",
-            ours.mean, ours.p999, ours.worst, times.mean, times.p999, times.worst,
-            ours.mean / times.mean, ours.p999 / times.p999, ours.worst / times.worst
+            ours.mean,
+            ours.p999,
+            ours.worst,
+            times.mean,
+            times.p999,
+            times.worst,
+            ours.mean / times.mean,
+            ours.p999 / times.p999,
+            ours.worst / times.worst
         );
     }
 }
 
-fn symmetric<const N: usize>(count: usize, distribution: Distribution, change: impl Fn(&mut Input<N>)) -> Vec<Input<N>> {
+fn symmetric<const N: usize>(
+    count: usize,
+    distribution: Distribution,
+    change: impl Fn(&mut Input<N>),
+) -> Vec<Input<N>> {
     let mut random = Random(2026);
     let mut inputs = Vec::new();
     while inputs.len() < count {
@@ -90,15 +104,27 @@ fn main() {
     bench::<3>("position", symmetric(count, Distribution::PeerTest, |_| {}), passes);
     bench::<6>("position", symmetric(count, Distribution::PeerTest, |_| {}), passes);
     bench::<7>("position", symmetric(count, Distribution::PeerTest, |_| {}), passes);
-    bench::<7>("position, none", symmetric(count, Distribution::PeerTest, |i: &mut Input<7>| {
-        i.synchronization = [Synchronization::None; 7];
-    }), passes);
+    bench::<7>(
+        "position, none",
+        symmetric(count, Distribution::PeerTest, |i: &mut Input<7>| {
+            i.synchronization = [Synchronization::None; 7];
+        }),
+        passes,
+    );
     bench::<6>("robot", symmetric(count, Distribution::Robot, |_| {}), passes);
-    bench::<6>("robot, rest to rest", symmetric(count, Distribution::Robot, |i: &mut Input<6>| {
-        i.current = State::at_rest(i.current.position);
-        i.target = State::at_rest(i.target.position);
-    }), passes);
-    bench::<6>("velocity control", symmetric(count, Distribution::PeerTest, |i: &mut Input<6>| {
-        i.control = [Control::Velocity; 6];
-    }), passes);
+    bench::<6>(
+        "robot, rest to rest",
+        symmetric(count, Distribution::Robot, |i: &mut Input<6>| {
+            i.current = State::at_rest(i.current.position);
+            i.target = State::at_rest(i.target.position);
+        }),
+        passes,
+    );
+    bench::<6>(
+        "velocity control",
+        symmetric(count, Distribution::PeerTest, |i: &mut Input<6>| {
+            i.control = [Control::Velocity; 6];
+        }),
+        passes,
+    );
 }
