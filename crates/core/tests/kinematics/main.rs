@@ -11,3 +11,4 @@ mod scara;
 mod spherical_wrist;
 mod structure;
 mod support;
+mod three_parallel;

@@ -5,7 +5,7 @@
 
 use super::SphericalWristArm;
 use crate::geometry::{PoseJet, Vector3};
-use crate::kinematics::two_link::STILL;
+use crate::kinematics::closed_form::STILL;
 use crate::kinematics::{InverseError, JointJet, Singularity};
 use crate::math::float::{cos, sin, sqrt};
 use crate::math::taylor::Taylor;
