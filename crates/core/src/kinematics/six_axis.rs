@@ -25,6 +25,7 @@ const SAME: f64 = 1e-8;
 
 /// The structures with a closed form.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is no heap to put the larger one on")]
 pub enum ClosedForm {
     /// Parallel shoulder and elbow axes, spherical wrist.
     SphericalWrist(SphericalWristArm),

@@ -102,4 +102,20 @@ fn stretched_arm_and_wrist_centre_on_axis_1() {
         matches!(error, Err(InverseError::Singular { singularity: Singularity::Elbow, .. })),
         "{error:?}"
     );
+    // θ₂ such that the upper arm and the line to the wrist end above axis 1: a₁ + c₂ sin θ₂ + … = 0 by Newton.
+    let mut over_head = [0.2, -0.5, 0.4, 0.3, -0.9, 0.1];
+    for _ in 0..20 {
+        let axes = arm.axes(&over_head);
+        let centre = axes.axes[4].point;
+        let out = centre.x * 0.2_f64.cos() + centre.y * 0.2_f64.sin();
+        over_head[1] -= out / (centre.z - axes.axes[1].point.z);
+    }
+    let mut sideways = PoseJet::at_rest(arm.forward(&over_head));
+    assert_eq!(arm.joint_jet(&sideways, &over_head), Ok(JointJet::at_rest(over_head)));
+    sideways.linear[0] = Vector3::x();
+    let error = arm.joint_jet(&sideways, &over_head);
+    assert!(
+        matches!(error, Err(InverseError::Singular { singularity: Singularity::Shoulder, .. })),
+        "{error:?}"
+    );
 }

@@ -6,6 +6,7 @@
 mod chain;
 mod differential;
 mod golden;
+mod identity;
 mod joint_jet;
 mod scara;
 mod spherical_wrist;

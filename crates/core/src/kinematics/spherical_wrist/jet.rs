@@ -7,7 +7,7 @@ use super::SphericalWristArm;
 use crate::geometry::{PoseJet, Vector3};
 use crate::kinematics::closed_form::STILL;
 use crate::kinematics::{InverseError, JointJet, Singularity};
-use crate::math::float::{cos, sin, sqrt};
+use crate::math::float::{sin_cos, sqrt};
 use crate::math::taylor::Taylor;
 
 /// A measure of distance below this is zero but for rounding.
@@ -79,6 +79,8 @@ impl SphericalWristArm {
             }
             return Err(InverseError::Singular { singularity: Singularity::Shoulder, distance: value.abs() });
         }
+        let (sin1, cos1) = sin_cos(theta[0]);
+        let (x, y) = (x.with_value(cos1 * value - sin1 * b), y.with_value(sin1 * value + cos1 * b));
         let radial = (x.squared() + y.squared()).sqrt_from(value);
         let theta1 = Taylor::angle(x * radial + y * b, y * radial + x * -b, theta[0]);
         Ok((theta1, radial + -g.shoulder_offset))
@@ -96,11 +98,13 @@ fn wrist_series(
     theta: &[f64; 6],
 ) -> Result<[Taylor; 3], InverseError> {
     let [_, _, _, theta4, theta5, theta6] = *theta;
-    let sin5 = sin(theta5);
+    let (sin_half, cos_half) = sin_cos(0.5 * theta5);
+    let h = h.with_wrist(0.5 * (theta4 + theta6), (sin_half, cos_half), 0.5 * (theta4 - theta6));
+    let sin5 = 2.0 * sin_half * cos_half;
     let still = STILL * motion.variation;
     if sin5.abs() <= VANISHING {
         let held = (Taylor::constant(theta4), Taylor::constant(theta5));
-        let upright = cos(theta5) > 0.0;
+        let upright = cos_half.abs() > sin_half.abs();
         if upright && h.x.variation().max(h.y.variation()) <= still {
             let sum = Taylor::angle(h.w, h.z, 0.5 * (theta4 + theta6)) * 2.0;
             return Ok([held.0, held.1, sum - held.0]);
@@ -136,6 +140,25 @@ impl QuaternionSeries {
             x: Taylor::from_derivatives(h0.i, h1.i, h2.i, h3.i),
             y: Taylor::from_derivatives(h0.j, h1.j, h2.j, h3.j),
             z: Taylor::from_derivatives(h0.k, h1.k, h2.k, h3.k),
+        }
+    }
+
+    /// The same derivatives with the values of a wrist's angles: half the sum of θ₄ and θ₆, (sin, cos) of half θ₅, half
+    /// the difference. Beside the pole they are known better than this rotation's rounded values say.
+    #[inline]
+    fn with_wrist(&self, half_sum: f64, (sin, cos): (f64, f64), half_difference: f64) -> Self {
+        let (sin_sum, cos_sum) = sin_cos(half_sum);
+        let (sin_difference, cos_difference) = sin_cos(half_difference);
+        let (w, x, y, z) = (cos * cos_sum, -sin * sin_difference, sin * cos_difference, cos * sin_sum);
+        // A quaternion and its negative are one rotation.
+        let Self { w: w0, x: x0, y: y0, z: z0 } = *self;
+        let same = w * w0.value() + x * x0.value() + y * y0.value() + z * z0.value();
+        let sign = 1.0_f64.copysign(same);
+        Self {
+            w: w0.with_value(sign * w),
+            x: x0.with_value(sign * x),
+            y: y0.with_value(sign * y),
+            z: z0.with_value(sign * z),
         }
     }
 
