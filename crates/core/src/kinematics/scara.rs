@@ -191,6 +191,9 @@ impl Kinematics<4> for ScaraArm {
     }
 
     fn joint_jet(&self, base_from_flange: &PoseJet, q: &[f64; 4]) -> Result<JointJet<4>, InverseError> {
+        if !(base_from_flange.is_finite() && q.iter().sum::<f64>().is_finite()) {
+            return Err(InverseError::NotFinite);
+        }
         let jet = base_from_flange.seen_from(&self.shoulder_from_base).attached(&self.flange_from_last);
         let tilting = jet.angular.iter().fold(0.0, |most: f64, w| most.max(hypot(w.x, w.y)));
         let turning = jet.angular.iter().fold(0.0, |most: f64, w| most.max(w.norm()));
