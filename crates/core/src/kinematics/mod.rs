@@ -7,6 +7,7 @@
 //! | model | inverse |
 //! |---|---|
 //! | [`SphericalWristArm`] | closed form, up to 8 branches by name |
+//! | [`ThreeParallelArm`] | closed form, up to 8 branches |
 //! | [`ScaraArm`] | closed form, both elbows |
 //! | [`SerialChain`] | numeric: damped Newton, then Taylor steps |
 //! | [`SixAxisArm`] | a chain, with the closed form where its structure has one, polished where it has one nearly |
@@ -14,6 +15,7 @@
 mod axes;
 mod branches;
 mod chain;
+mod closed_form;
 mod differential;
 mod error;
 mod limits;
@@ -22,7 +24,7 @@ mod scara;
 mod singular_values;
 mod six_axis;
 mod spherical_wrist;
-mod two_link;
+mod three_parallel;
 
 pub use axes::{Jacobian, JointAxes, JointAxis};
 pub use branches::Branches;
@@ -33,11 +35,12 @@ pub use error::{InverseError, ModelError, Singularity};
 pub use limits::JointLimits;
 pub use scara::{Handedness, ScaraArm, ScaraGeometry, ScaraSolution, ScaraSolutions};
 pub use singular_values::SingularValues;
-pub use six_axis::{InverseMethod, SixAxisArm};
+pub use six_axis::{ClosedForm, InverseMethod, SixAxisArm};
 pub use spherical_wrist::{
     Configuration, Elbow, OpwParameters, Posture, Shoulder, SingularityDistances, Solution, Solutions,
     SphericalWristArm, SphericalWristGeometry, Wrist,
 };
+pub use three_parallel::ThreeParallelArm;
 
 use crate::geometry::{Pose, PoseJet};
 use crate::math::taylor::Taylor;

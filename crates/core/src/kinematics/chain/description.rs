@@ -60,7 +60,7 @@ pub struct DhRow {
 }
 
 /// The joint frames that a table describes, each on the one before, and the flange behind the last.
-pub(in crate::kinematics) fn from_dh<const N: usize>(
+pub(crate) fn from_dh<const N: usize>(
     rows: &[DhRow; N],
     convention: DhConvention,
 ) -> ([(Pose, JointKind); N], Pose) {

@@ -18,7 +18,7 @@ pub use solutions::{Solution, Solutions};
 
 use nalgebra::{Quaternion, UnitQuaternion};
 
-use super::two_link::TwoLink;
+use super::closed_form::TwoLink;
 use super::{Branches, InverseError, JointAxes, JointAxis, JointJet, JointLimits, Kinematics, ModelError};
 use crate::geometry::{Pose, PoseJet, Vector3, is_finite};
 use crate::math::float::{atan2, hypot, sin_cos};
@@ -282,10 +282,7 @@ impl Kinematics<6> for SphericalWristArm {
         base_from_flange: &Pose,
         reference: &[f64; 6],
     ) -> Result<Branches<[f64; 6], 8>, InverseError> {
-        let mut found = Branches::none(*reference);
-        let within = self.inverse_within_limits(base_from_flange, reference)?;
-        within.as_slice().iter().for_each(|solution| found.push(solution.q));
-        Ok(found)
+        Ok(self.inverse_within_limits(base_from_flange, reference)?.map(|solution| solution.q))
     }
 
     fn joint_jet(&self, base_from_flange: &PoseJet, q: &[f64; 6]) -> Result<JointJet<6>, InverseError> {
