@@ -168,6 +168,14 @@ impl fmt::Display for Reach<'_> {
             InverseError::OutOfOrientation { angle } => {
                 write!(f, "the orientation is {:.2} deg beyond what the arm can turn", angle.to_degrees())
             }
+            InverseError::NotFollowed { .. } => {
+                write!(f, "the path asks for a direction of motion that the arm's joints do not have")
+            }
+            InverseError::NotConverged { iterations, position_residual, .. } => write!(
+                f,
+                "the numeric inverse ends {:.4} mm off after {iterations} iterations",
+                mm(*position_residual)
+            ),
             InverseError::PositionLimit { axis, value, min, max } => write!(
                 f,
                 "joint {} would stand at {:.2} deg, outside {:.1} … {:.1} deg, in the configuration asked for",

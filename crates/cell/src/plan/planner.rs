@@ -6,11 +6,11 @@ use seamline::otg::{Input, Limits, State, Synchronization, calculate};
 
 use super::arm::{Arm, PlanningArm};
 use super::error::{PlanError, Problem};
-use super::resolve::{Goal, ToolPose, goal};
+use super::resolve::{self, Goal, ToolPose, goal};
 use super::speed;
 use super::tool_path;
 use crate::cell::Cell;
-use crate::job::{Action, ArcCondition, Location, Move, MovePath, Note, Speed, Step, Zone};
+use crate::job::{Action, ArcCondition, Frame, Location, Move, MovePath, Note, Speed, Step, Zone};
 use crate::record::{SegmentInfo, SegmentKind};
 
 /// What a step becomes.
@@ -79,7 +79,7 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             Action::ArcOff(condition) => self.arc_off(&step.at, condition)?,
             Action::Dwell { seconds } => self.dwell(&step.at, *seconds),
             Action::Unsupported { text, reason } => {
-                return Err(Problem::Refused { text: text.clone(), reason: (*reason).into() });
+                return Err(Problem::Refused { text: text.clone(), reason: reason.clone() });
             }
             _ => Planned::default(),
         };
@@ -169,11 +169,7 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
                 }
                 planned
             }
-            MovePath::Incremental { frame } => {
-                let base_from_tcp = tool_path::increment(&self.pose(), &r#move.target, *frame, self.cell)?;
-                let path = tool_path::line(&self.pose(), &base_from_tcp);
-                self.path_move(at, r#move, &path, None)?
-            }
+            MovePath::Incremental { frame } => self.incremental_move(at, r#move, *frame)?,
             MovePath::Spline => {
                 let reason = "spline moves are not executed yet".into();
                 return Err(Problem::Refused { text: format!("MOVS {}", r#move.target.name), reason });
@@ -184,6 +180,24 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             planned.notices.dedup();
         }
         Ok(planned)
+    }
+
+    /// A line by an increment: in a frame, or joint by joint in pulses.
+    fn incremental_move(
+        &mut self,
+        at: &Location,
+        r#move: &Move,
+        frame: Option<Frame>,
+    ) -> Result<Planned<N>, Problem> {
+        let end = match frame {
+            Some(frame) => tool_path::increment(&self.pose(), &r#move.target, frame, self.cell)?,
+            None => {
+                let joints = resolve::pulse_increment(&r#move.target, self.arm, &self.joints)?;
+                self.arm.kinematics.forward(&joints) * self.tool.flange_from_tcp
+            }
+        };
+        let path = tool_path::line(&self.pose(), &end);
+        self.path_move(at, r#move, &path, None)
     }
 
     /// The tool centre point where the plan stands.

@@ -41,8 +41,7 @@ pub(super) fn goal<const N: usize, K: PlanningArm<N>>(
     let tool = ToolPose::of(cell, target.position.tool)?;
     match &target.position.coordinates {
         Coordinates::Pulses(pulses) => {
-            let joints = joints_from_pulses(pulses, &arm.pulses_per_degree)
-                .ok_or_else(|| Problem::PositionLength { name: name(), found: pulses.len(), expected: N })?;
+            let joints = joints_of(pulses, arm, &name())?;
             check_range(&joints, arm, &name())?;
             let base_from_tcp = arm.kinematics.forward(&joints) * tool.flange_from_tcp;
             Ok(Goal { base_from_tcp, tool, joints: Ok(joints) })
@@ -56,6 +55,27 @@ pub(super) fn goal<const N: usize, K: PlanningArm<N>>(
         }
         Coordinates::Angles(_) => Err(Problem::StationPosition { name: name() }),
     }
+}
+
+/// The joints after an increment in pulses.
+pub(super) fn pulse_increment<const N: usize, K>(
+    target: &Target,
+    arm: &Arm<N, K>,
+    from: &[f64; N],
+) -> Result<[f64; N], Problem> {
+    let name = target.name.to_string();
+    let Coordinates::Pulses(pulses) = &target.position.coordinates else {
+        return Err(Problem::StationPosition { name });
+    };
+    let step = joints_of(pulses, arm, &name)?;
+    let joints = std::array::from_fn(|joint| from[joint] + step[joint]);
+    check_range(&joints, arm, &name)?;
+    Ok(joints)
+}
+
+fn joints_of<const N: usize, K>(pulses: &[i32], arm: &Arm<N, K>, name: &str) -> Result<[f64; N], Problem> {
+    let short = || Problem::PositionLength { name: name.into(), found: pulses.len(), expected: N };
+    joints_from_pulses(pulses, &arm.pulses_per_degree).ok_or_else(short)
 }
 
 fn base_from_frame(position: &Rectangular, cell: &Cell, name: &str) -> Result<Pose, Problem> {
