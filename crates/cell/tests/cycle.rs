@@ -1,8 +1,8 @@
 //! Planned moves through the control cycle and the simulated drives, judged by an independent arm model.
 
-mod common;
+mod machine;
 
-use common::{Ar2010, Bench, independent_forward, independent_torch, move_to, worst_shares};
+use machine::{Ar2010, Bench, independent_forward, independent_torch, move_to, worst_shares};
 use seamline::control::{Command, Event, Mode};
 use seamline::kinematics::Kinematics;
 use seamline_cell::cell::Cell;

@@ -1,161 +1,225 @@
-//! What several tests need: an independent arm model, and runs of planned steps.
+//! Random tool paths of an AR2010-class arm, beside its singularities too, as the joints see them.
 
-use std::collections::VecDeque;
-use std::sync::Arc;
+#![allow(dead_code)]
 
-use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
-use seamline::control::{
-    Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, NoClock, ServoModel,
-};
-use seamline::drive::Drive;
-use seamline::kinematics::SphericalWristArm;
-use seamline::safety::WorkspaceBox;
-use seamline_cell::cell::Cell;
-use seamline_cell::job::{
-    Action, Coordinates, JobPosition, Location, Move, MovePath, PositionKind, PositionName, Speed,
-    SpeedOrigin, Step, Target, Zone, pulses_from_joints,
-};
-use seamline_cell::plan::{Arm, Planner};
-use seamline_cell::sim::SimulatedDrive;
+use seamline::geometry::{Pose, Rotation, Vector3};
+use core::f64::consts::TAU;
+use seamline::kinematics::{InverseError, JointJet, Kinematics, Posture, SphericalWristArm, models};
+use seamline::path::Path;
+use seamline_cell::plan::timing::{JointPath, PathLimits, TimingLimits};
 
-pub(crate) type Ar2010 = Arm<6, SphericalWristArm>;
+/// Neighbouring places of a trace differ by at most this in any joint.
+const TRACE_STEP: f64 = 0.2;
+const TRACE_DEPTH: u32 = 50;
 
-/// Flange pose of the default robot by the product of exponentials, from the makers' data alone: axes at zero z, y, −y,
-/// −x, −y, −x through the points named; flange at zero at (1.332, 0, 0.960) with z along +x and x along +z.
-pub(crate) fn independent_forward(q: &[f64; 6]) -> Isometry3<f64> {
-    let axes = [
-        (Vector3::z(), Vector3::zeros()),
-        (Vector3::y(), Vector3::new(0.150, 0.0, 0.0)),
-        (-Vector3::y(), Vector3::new(0.150, 0.0, 0.760)),
-        (-Vector3::x(), Vector3::new(0.150, 0.0, 0.960)),
-        (-Vector3::y(), Vector3::new(1.232, 0.0, 0.960)),
-        (-Vector3::x(), Vector3::new(1.232, 0.0, 0.960)),
-    ];
-    let zero = nalgebra::Matrix3::from_columns(&[Vector3::z(), -Vector3::y(), Vector3::x()]);
-    let flange = UnitQuaternion::from_matrix(&zero);
-    let mut pose = Isometry3::from_parts(Translation3::new(1.332, 0.0, 0.960), flange);
-    for (angle, (axis, point)) in q.iter().zip(axes).rev() {
-        let turn = UnitQuaternion::from_axis_angle(&Unit::new_normalize(axis), *angle);
-        pose = Isometry3::from_parts((point - turn * point).into(), turn) * pose;
+/// A tool path with the joints' branch followed along it.
+#[derive(Clone)]
+pub struct ArmPath {
+    arm: SphericalWristArm,
+    path: Path,
+    tool_from_flange: Pose,
+    /// Kept all along: beside a singularity the joints turn, they do not flip.
+    posture: Posture,
+    trace: Vec<(f64, [f64; 6])>,
+}
+
+impl ArmPath {
+    /// The path, on the branch of `q` at `s`. None where the arm cannot follow it all along.
+    pub fn try_new(path: Path, flange_from_tool: &Pose, s: f64, q: [f64; 6]) -> Option<Self> {
+        let tool_from_flange = flange_from_tool.inverse();
+        let arm = models::ar2010();
+        let posture = arm.posture(&q);
+        let mut made = Self { arm, path, tool_from_flange, posture, trace: Vec::new() };
+        let mut back = made.traced(s, q, 0.0)?;
+        back.reverse();
+        let on = made.traced(s, q, path.length())?;
+        back.pop();
+        back.extend(on);
+        made.trace = back;
+        Some(made)
     }
-    pose
-}
 
-/// The default torch: translation (−43.83, 0, 458.48) mm, then −22° about y.
-pub(crate) fn independent_torch() -> Isometry3<f64> {
-    let tilt = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), -22_f64.to_radians());
-    Isometry3::from_parts(Translation3::new(-0.04383, 0.0, 0.45848), tilt)
-}
-
-pub(crate) struct Queue(pub(crate) VecDeque<Command<6>>);
-
-impl CommandSource<6> for Queue {
-    fn next(&mut self) -> Option<Command<6>> {
-        self.0.pop_front()
+    fn traced(&self, from: f64, q: [f64; 6], to: f64) -> Option<Vec<(f64, [f64; 6])>> {
+        let mut trace = vec![(from, q)];
+        let mut waiting = vec![(to, 0)];
+        while let Some(&(s, depth)) = waiting.last() {
+            let (before, seed) = trace[trace.len() - 1];
+            let next = self.inverse(s, &seed)?;
+            let near = next.iter().zip(&seed).all(|(a, b)| (a - b).abs() < TRACE_STEP);
+            if near && (s - before).abs() < self.path.length() / 7.0 {
+                trace.push((s, next));
+                waiting.pop();
+            } else if depth < TRACE_DEPTH {
+                waiting.last_mut()?.1 += 1;
+                waiting.push(((before + s) / 2.0, depth + 1));
+            } else {
+                return None;
+            }
+        }
+        Some(trace)
     }
-}
 
-pub(crate) fn location(line: u32) -> Location {
-    Location { job: Arc::from("TEST"), line }
-}
+    fn flange(&self, s: f64) -> Pose {
+        self.path.pose(s) * self.tool_from_flange
+    }
 
-pub(crate) fn step(line: u32, action: Action) -> Step {
-    Step { at: location(line), action, notes: Vec::new() }
-}
+    fn inverse(&self, s: f64, seed: &[f64; 6]) -> Option<[f64; 6]> {
+        let solutions = self.arm.inverse(&self.flange(s), seed).ok()?;
+        let same = solutions.as_slice().iter().find(|solution| solution.posture == self.posture)?;
+        let turns: [f64; 6] = core::array::from_fn(|i| ((seed[i] - same.q[i]) / TAU).round());
+        let q = core::array::from_fn(|i| same.q[i] + TAU * turns[i]);
+        self.arm.limits().first_violation(&q).is_none().then_some(q)
+    }
 
-/// A move to joint positions, given in pulses as a robot saves them.
-pub(crate) fn move_to(line: u32, path: MovePath, speed: Speed, arm: &Ar2010, joints: &[f64; 6]) -> Step {
-    let pulses = pulses_from_joints(joints, &arm.pulses_per_degree);
-    let name = PositionName { local: false, kind: PositionKind::C, number: line };
-    let position = JobPosition { coordinates: Coordinates::Pulses(pulses), tool: 0 };
-    step(
-        line,
-        Action::Move(Box::new(Move {
-            path,
-            target: Target { name, position },
-            speed,
-            speed_origin: SpeedOrigin::Written,
-            zone: Zone::Exact,
-            acceleration: 1.0,
-            deceleration: 1.0,
-            no_wait: false,
-        })),
-    )
-}
-
-pub(crate) fn config(cell: &Cell, arm: &Ar2010) -> CycleConfig<6> {
-    let planner = Planner::new(arm, cell, arm.home).unwrap();
-    CycleConfig {
-        period: cell.cycle.period,
-        limits: arm.limits,
-        workspace: WorkspaceBox { low: cell.safety.workspace_min, high: cell.safety.workspace_max },
-        flange_from_tcp: *planner.flange_from_tcp(),
-        servo: ServoModel {
-            lag: std::array::from_fn(|joint| cell.simulation.servo_lag[joint]),
-            feed_forward: [cell.simulation.velocity_feed_forward; 6],
-            following_error: arm.following_error,
-        },
-        overruns_in_row: 10,
+    pub fn joints(&self, s: f64) -> Option<[f64; 6]> {
+        let next = self.trace.partition_point(|&(place, _)| place <= s).clamp(1, self.trace.len() - 1);
+        let ((s0, q0), (s1, q1)) = (self.trace[next - 1], self.trace[next]);
+        let share = (s - s0) / (s1 - s0);
+        let seed = core::array::from_fn(|i| q0[i] + share * (q1[i] - q0[i]));
+        self.inverse(s, &seed)
     }
 }
 
-/// A controller with its simulated drives.
-pub(crate) struct Bench {
-    pub(crate) cycle: Cycle<6, SphericalWristArm>,
-    pub(crate) drive: SimulatedDrive<6>,
-    pub(crate) queue: Queue,
-    pub(crate) input: CycleInput<6>,
-    pub(crate) period: f64,
-}
+impl JointPath<6> for ArmPath {
+    /// `None`: no joint positions. `Some`: no derivatives.
+    type Error = Option<InverseError>;
 
-impl Bench {
-    pub(crate) fn new(cell: &Cell, arm: &Ar2010, commands: Vec<Command<6>>) -> Self {
-        let mut bench = Self {
-            cycle: Cycle::new(config(cell, arm), arm.kinematics, arm.home),
-            drive: SimulatedDrive::from_cell(cell).unwrap(),
-            queue: Queue(commands.into()),
-            input: CycleInput {
-                measured: Ok(arm.home),
-                speed_override: 1.0,
-                event: None,
-                fault: None,
-                late: false,
-            },
-            period: cell.cycle.period,
-        };
-        bench.cycle_with(Event::Enable);
-        bench
+    fn length(&self) -> f64 {
+        self.path.length()
     }
 
-    pub(crate) fn cycle_with(&mut self, event: Event) -> CycleOutput<6> {
-        self.input.event = Some(event);
-        let output = self.cycle();
-        assert_eq!(output.status.refused, None, "{event:?}");
-        output
-    }
-
-    pub(crate) fn cycle(&mut self) -> CycleOutput<6> {
-        let output = self.cycle.step(&self.input, &mut self.queue, &mut NoClock);
-        self.input.event = None;
-        self.input.fault = None;
-        self.input.measured = Drive::exchange(&mut self.drive, &output.command, self.period);
-        output
+    fn jet(&mut self, s: f64) -> Result<JointJet<6>, Self::Error> {
+        let q = self.joints(s).ok_or(None)?;
+        self.arm.joint_jet(&self.path.jet(s).attached(&self.tool_from_flange), &q).map_err(Some)
     }
 }
 
-/// Largest differences of the commands as shares of the limits: velocity, acceleration, jerk.
-pub(crate) fn worst_shares(commands: &[[f64; 6]], arm: &Ar2010, period: f64) -> [f64; 3] {
-    let mut worst = [0.0_f64; 3];
-    for q in commands.windows(4) {
-        for joint in 0..6 {
-            let d = |k: usize| (q[k + 1][joint] - q[k][joint]) / period;
-            let shares = [
-                d(2) / arm.limits.velocity[joint],
-                (d(2) - d(1)) / period / arm.limits.acceleration[joint],
-                (d(2) - 2.0 * d(1) + d(0)) / (period * period) / arm.limits.jerk[joint],
-            ];
-            worst = std::array::from_fn(|k| worst[k].max(shares[k].abs()));
+/// What a random move is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    Line,
+    Arc,
+    BesideWrist,
+    BesideShoulder,
+}
+
+/// A random move.
+pub struct Move {
+    pub kind: Kind,
+    pub path: ArmPath,
+    pub limits: PathLimits,
+}
+
+/// Limits of the default cell: full speed in 0.2 s (0.125 s for the wrist), jerk 50 times the acceleration a second.
+pub fn joint_limits() -> TimingLimits<6> {
+    let radians = |values: [f64; 6]| values.map(f64::to_radians);
+    let acceleration = radians([1050.0, 1050.0, 1100.0, 3480.0, 3480.0, 5600.0]);
+    TimingLimits {
+        velocity: radians([210.0, 210.0, 220.0, 435.0, 435.0, 700.0]),
+        acceleration,
+        jerk: acceleration.map(|a| 50.0 * a),
+    }
+}
+
+/// A torch: 459 mm ahead of the flange, bent by 22°.
+pub fn torch() -> Pose {
+    let bend = Rotation::from_axis_angle(&Vector3::y_axis(), -22f64.to_radians());
+    Pose::from_parts([-0.04383, 0.0, 0.45848].into(), bend)
+}
+
+/// A repeatable source of randomness (splitmix64).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    pub fn log_within(&mut self, low: f64, high: f64) -> f64 {
+        self.within(low.ln(), high.ln()).exp()
+    }
+
+    fn direction(&mut self) -> Vector3 {
+        let z = self.within(-1.0, 1.0);
+        let (sin, cos) = self.within(0.0, TAU).sin_cos();
+        let r = (1.0 - z * z).sqrt();
+        Vector3::new(r * cos, r * sin, z)
+    }
+
+    fn joints(&mut self, arm: &SphericalWristArm) -> [f64; 6] {
+        arm.position_limits().map(|(low, high)| {
+            let margin = 0.1 * (high - low);
+            self.within(low + margin, high - margin)
+        })
+    }
+}
+
+/// A random move of the kind, tried until the arm can follow it.
+pub fn random_move(random: &mut Random, kind: Kind) -> Move {
+    for _ in 0..100_000 {
+        if let Some(path) = candidate(random, kind) {
+            let speed = random.log_within(0.005, 1.0);
+            let (rise, most) = (0.04, (10.0, 500.0));
+            let limits = PathLimits {
+                speed,
+                acceleration: (2.0 * speed / rise).min(most.0),
+                jerk: (8.0 * speed / (rise * rise)).min(most.1),
+            };
+            return Move { kind, path, limits };
         }
     }
-    worst
+    panic!("no {kind:?} found");
+}
+
+fn candidate(random: &mut Random, kind: Kind) -> Option<ArmPath> {
+    let (arm, tool) = (models::ar2010(), torch());
+    let mut middle = random.joints(&arm);
+    match kind {
+        Kind::Line | Kind::Arc => {}
+        Kind::BesideWrist => {
+            let side = if random.unit() < 0.5 { -1.0 } else { 1.0 };
+            middle[4] = side * random.log_within(1e-6, 2e-2);
+        }
+        Kind::BesideShoulder => middle = above_axis_1(random, &arm)?,
+    }
+    let pose = arm.forward(&middle) * tool;
+    let length = random.log_within(0.02, 0.8);
+    let turn = Rotation::from_scaled_axis(random.direction() * random.within(0.0, 0.5));
+    let direction = random.direction();
+    let share = random.within(0.3, 0.7);
+    let displaced = |distance: f64, turned: f64| {
+        let rotation = Rotation::default().slerp(&turn, turned.abs());
+        let rotation = if turned < 0.0 { rotation.inverse() } else { rotation };
+        Pose::from_parts((pose.translation.vector + direction * distance).into(), rotation * pose.rotation)
+    };
+    let (start, end) = (displaced(-share * length, -share), displaced((1.0 - share) * length, 1.0 - share));
+    if kind != Kind::Arc {
+        return ArmPath::try_new(Path::line(&start, &end), &tool, share * length, middle);
+    }
+    let normal = direction.cross(&random.direction()).normalize();
+    let via = pose.translation.vector + normal * (length * random.log_within(0.05, 0.5));
+    let via = Pose::from_parts(via.into(), pose.rotation);
+    let path = Path::arc(&start, &via, &end).ok()?;
+    let first = arm.inverse_nearest(&(start * tool.inverse()), &middle).ok()?;
+    ArmPath::try_new(path, &tool, 0.0, first)
+}
+
+/// Joints whose wrist centre lies 1 µm to 10 mm from axis 1.
+fn above_axis_1(random: &mut Random, arm: &SphericalWristArm) -> Option<[f64; 6]> {
+    let (radius, angle) = (random.log_within(1e-6, 1e-2), random.within(-3.0, 3.0));
+    let position = Vector3::new(radius * angle.cos(), radius * angle.sin(), random.within(0.6, 1.7));
+    let rotation = Rotation::from_scaled_axis(random.direction() * random.within(0.0, 3.0));
+    let wrist = Pose::from_parts(position.into(), rotation);
+    let flange = wrist * arm.geometry().wrist_from_flange;
+    let solutions = arm.inverse_within_limits(&flange, &[0.0; 6]).ok()?;
+    let choice = (random.unit() * solutions.as_slice().len() as f64) as usize;
+    solutions.as_slice().get(choice).map(|solution| solution.q)
 }
