@@ -30,13 +30,13 @@ impl<const N: usize> Cholesky<N> {
             }
             let reciprocal = 1.0 / sqrt(pivot);
             factor[j][j] = reciprocal;
-            for i in j + 1..N {
-                factor[j][i] *= reciprocal;
+            for below in &mut factor[j][j + 1..] {
+                *below *= reciprocal;
             }
+            let column = factor[j];
             for k in j + 1..N {
-                let multiplier = factor[j][k];
-                for i in k..N {
-                    factor[k][i] -= multiplier * factor[j][i];
+                for (place, below) in factor[k][k..].iter_mut().zip(&column[k..]) {
+                    *place -= column[k] * below;
                 }
             }
         }

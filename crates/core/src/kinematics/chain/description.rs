@@ -59,14 +59,12 @@ pub struct DhRow {
     pub kind: JointKind,
 }
 
-/// The joints that a table describes, and what is left between the last joint and the flange.
-pub(super) fn from_dh<const N: usize>(
+/// The joint frames that a table describes, each on the one before, and the flange behind the last.
+pub(in crate::kinematics) fn from_dh<const N: usize>(
     rows: &[DhRow; N],
     convention: DhConvention,
-    base_from_first: &Pose,
-    last_from_flange: &Pose,
-) -> ([JointDescription; N], Pose) {
-    let mut parent_from_joint = *base_from_first;
+) -> ([(Pose, JointKind); N], Pose) {
+    let mut parent_from_joint = Pose::identity();
     let joints = rows.map(|row| {
         let along_x = Pose::from_parts([row.a, 0.0, 0.0].into(), turned(&Vector3::x(), row.alpha));
         let along_z = Pose::from_parts([0.0, 0.0, row.d].into(), turned(&Vector3::z(), row.theta));
@@ -74,15 +72,11 @@ pub(super) fn from_dh<const N: usize>(
             DhConvention::Standard => (Pose::identity(), along_z * along_x),
             DhConvention::Modified => (along_x, along_z),
         };
-        let joint = JointDescription {
-            parent_from_joint: parent_from_joint * before,
-            axis: Vector3::z(),
-            kind: row.kind,
-        };
+        let joint = (parent_from_joint * before, row.kind);
         parent_from_joint = behind;
         joint
     });
-    (joints, parent_from_joint * last_from_flange)
+    (joints, parent_from_joint)
 }
 
 fn turned(axis: &Vector3, angle: f64) -> Rotation {

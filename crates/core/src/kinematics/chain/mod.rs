@@ -3,8 +3,9 @@
 //! Forward kinematics goes from link to link; the inverse is numeric ([`solver`]), or in closed form where
 //! [`structure`] finds a spherical wrist.
 
-mod description;
+pub(super) mod description;
 mod solver;
+mod structure;
 
 pub use description::{DhConvention, DhRow, JointDescription, JointKind};
 pub use solver::{NumericSolution, SolverSettings};
@@ -29,7 +30,7 @@ pub struct SerialChain<const N: usize> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Link {
     parent_from_joint: Frame,
-    prismatic: bool,
+    kind: JointKind,
 }
 
 /// A rigid transformation as a matrix: columns are at hand, and turning about z touches two of them.
@@ -77,21 +78,15 @@ impl<const N: usize> SerialChain<N> {
         last_from_flange: &Pose,
         limits: JointLimits<N>,
     ) -> Result<Self, ModelError> {
-        let mut links = [Link { parent_from_joint: Frame::of(&Pose::identity()), prismatic: false }; N];
+        let mut turned = [(Pose::identity(), JointKind::Revolute); N];
         // Joint frames are turned so that their z axis is the joint's axis.
         let mut described_from_turned = Pose::identity();
-        for (axis, (link, joint)) in links.iter_mut().zip(joints).enumerate() {
+        for (axis, (turned, joint)) in turned.iter_mut().zip(joints).enumerate() {
             let turn = joint.z_onto_axis(axis)?;
-            let parent_from_joint = described_from_turned.inverse() * joint.parent_from_joint * turn;
-            *link = Link {
-                parent_from_joint: Frame::of(&parent_from_joint),
-                prismatic: joint.kind == JointKind::Prismatic,
-            };
+            *turned = (described_from_turned.inverse() * joint.parent_from_joint * turn, joint.kind);
             described_from_turned = turn;
         }
-        let flange = Frame::of(&(described_from_turned.inverse() * last_from_flange));
-        let numbers = flange.rotation.sum() + flange.position.sum();
-        if numbers.is_finite() { Ok(Self { links, flange, limits }) } else { Err(ModelError::NotFinite) }
+        Self::of_z_joints(&turned, &(described_from_turned.inverse() * last_from_flange), limits).checked()
     }
 
     /// A chain from its axes at zero (a product of exponentials).
@@ -121,8 +116,29 @@ impl<const N: usize> SerialChain<N> {
         last_from_flange: &Pose,
         limits: JointLimits<N>,
     ) -> Result<Self, ModelError> {
-        let (joints, flange) = description::from_dh(rows, convention, base_from_first, last_from_flange);
-        Self::try_new(&joints, &flange, limits)
+        let (joints, flange) = description::from_dh(rows, convention);
+        let mut joints = joints;
+        if let Some((first, _)) = joints.first_mut() {
+            *first = base_from_first * *first;
+        }
+        Self::of_z_joints(&joints, &(flange * last_from_flange), limits).checked()
+    }
+
+    /// A chain whose joint axes are the z axes of their frames.
+    pub(super) fn of_z_joints(
+        joints: &[(Pose, JointKind); N],
+        last_from_flange: &Pose,
+        limits: JointLimits<N>,
+    ) -> Self {
+        let links = joints
+            .map(|(parent_from_joint, kind)| Link { parent_from_joint: Frame::of(&parent_from_joint), kind });
+        Self { links, flange: Frame::of(last_from_flange), limits }
+    }
+
+    fn checked(self) -> Result<Self, ModelError> {
+        let sum = |frame: &Frame| frame.rotation.sum() + frame.position.sum();
+        let numbers: f64 = self.links.iter().map(|link| sum(&link.parent_from_joint)).sum();
+        if (numbers + sum(&self.flange)).is_finite() { Ok(self) } else { Err(ModelError::NotFinite) }
     }
 
     /// The chain's limits.
@@ -138,10 +154,11 @@ impl<const N: usize> SerialChain<N> {
         for (i, (link, &position)) in self.links.iter().zip(q).enumerate() {
             let joint = frame.then(&link.parent_from_joint);
             passed(i, &joint);
-            frame = if link.prismatic {
-                Frame { position: joint.position + joint.rotation.column(2) * position, ..joint }
-            } else {
-                joint.turned_about_z(position)
+            frame = match link.kind {
+                JointKind::Revolute => joint.turned_about_z(position),
+                JointKind::Prismatic => {
+                    Frame { position: joint.position + joint.rotation.column(2) * position, ..joint }
+                }
             };
         }
         frame.then(&self.flange)
@@ -162,7 +179,7 @@ impl<const N: usize> Kinematics<N> for SerialChain<N> {
             axes[i] = JointAxis {
                 direction: joint.rotation.column(2).into_owned(),
                 point: joint.position,
-                prismatic: self.links[i].prismatic,
+                prismatic: self.links[i].kind == JointKind::Prismatic,
             };
         });
         JointAxes { axes, base_from_flange: flange.pose() }

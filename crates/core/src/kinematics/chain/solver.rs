@@ -10,8 +10,7 @@ use nalgebra::{SMatrix, Vector6};
 
 use super::SerialChain;
 use crate::geometry::{Pose, Vector3};
-use crate::kinematics::limits::nearest_turn_within;
-use crate::kinematics::{InverseError, JointAxes, JointJet, Kinematics};
+use crate::kinematics::{InverseError, Jacobian, JointAxes, JointJet, Kinematics};
 use crate::math::float::{atan2, floor, powf};
 use crate::math::linear::Cholesky;
 
@@ -52,10 +51,14 @@ pub struct NumericSolution<const N: usize> {
 
 /// Damping λ = this · |e|².
 const DAMPING: f64 = 0.3;
+/// Damping of a Jacobian without full row rank, of its squared norm: changes a step by a part in 10⁴ at most.
+const LEAST_DAMPING: f64 = 1e-12;
 /// Steps longer than this in any joint (radians) are shortened to it.
 const LONGEST_STEP: f64 = 1.0;
 /// Taylor steps are taken where the undamped step stays below this in every joint.
 const TAYLOR_STEP: f64 = 0.35;
+/// … and the twist is shorter than this (metres and radians together).
+const TAYLOR_TWIST: f64 = 1.0;
 /// A start is given up if this many iterations have not halved the error.
 const PATIENCE: usize = 8;
 
@@ -89,6 +92,7 @@ impl<const N: usize> SerialChain<N> {
         if !sum.is_finite() {
             return Err(InverseError::NotFinite);
         }
+        let kinds = self.links.map(|link| link.kind);
         let mut iterations = 0;
         let mut best: Option<Descent<N>> = None;
         let mut outside = None;
@@ -97,20 +101,18 @@ impl<const N: usize> SerialChain<N> {
             let descent = self.descend(base_from_flange, from, settings);
             iterations += descent.iterations;
             if descent.converged {
-                match self.turned_within_limits(&descent.q, seed) {
-                    Ok(q) => {
-                        let Descent { position_residual, rotation_residual, .. } = descent;
-                        let starts = start + 1;
-                        return Ok(NumericSolution {
-                            q,
-                            iterations,
-                            starts,
-                            position_residual,
-                            rotation_residual,
-                        });
-                    }
-                    Err(error) => outside = outside.or(Some(error)),
+                if let Some(q) = self.limits.turned_within(&descent.q, seed, &kinds) {
+                    let Descent { position_residual, rotation_residual, .. } = descent;
+                    let starts = start + 1;
+                    return Ok(NumericSolution {
+                        q,
+                        iterations,
+                        starts,
+                        position_residual,
+                        rotation_residual,
+                    });
                 }
+                outside = outside.or_else(|| Some(self.limits.worst_violation(&descent.q, &kinds)));
             }
             let error = |d: &Descent<N>| d.position_residual + d.rotation_residual;
             if best.as_ref().is_none_or(|best| error(&descent) < error(best)) {
@@ -168,21 +170,6 @@ impl<const N: usize> SerialChain<N> {
             min + (max - min) * (x - floor(x))
         })
     }
-
-    /// Turning joints in the turn nearest to the reference, all within the limits.
-    fn turned_within_limits(&self, q: &[f64; N], reference: &[f64; N]) -> Result<[f64; N], InverseError> {
-        let mut turned = *q;
-        for (axis, position) in turned.iter_mut().enumerate() {
-            let (min, max) = self.limits.position()[axis];
-            let inside = if self.links[axis].prismatic {
-                (*position >= min && *position <= max).then_some(*position)
-            } else {
-                nearest_turn_within(*position, reference[axis], (min, max))
-            };
-            *position = inside.ok_or(InverseError::PositionLimit { axis, value: *position, min, max })?;
-        }
-        Ok(turned)
-    }
 }
 
 /// The straight way from one pose to another: translation and rotation vector, in the base frame.
@@ -199,24 +186,46 @@ fn twist_to(from: &Pose, to: &Pose) -> Vector6<f64> {
     Vector6::new(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
 }
 
+/// Jᵀ·(J·Jᵀ + λ)⁻¹, the damped inverse of the Jacobian.
+struct DampedInverse<const N: usize> {
+    jacobian: Jacobian<N>,
+    factor: Cholesky<6>,
+}
+
+impl<const N: usize> DampedInverse<N> {
+    /// Nothing where J·Jᵀ + λ is singular.
+    #[inline]
+    fn new(jacobian: Jacobian<N>, damping: f64) -> Option<Self> {
+        // With fewer than six joints J·Jᵀ is singular always.
+        let least = if N < 6 { LEAST_DAMPING * jacobian.norm_squared() } else { 0.0 };
+        let damping = SMatrix::identity() * damping.max(least);
+        let factor = Cholesky::new(&(jacobian * jacobian.transpose() + damping))?;
+        Some(Self { jacobian, factor })
+    }
+
+    #[inline]
+    fn solve(&self, twist: &Vector6<f64>) -> [f64; N] {
+        self.jacobian.tr_mul(&Vector6::from(self.factor.solve(&(*twist).into()))).into()
+    }
+}
+
 /// The next step of the joints towards a flange displaced by `twist`.
 #[inline]
 fn step<const N: usize>(axes: &JointAxes<N>, twist: &Vector6<f64>) -> [f64; N] {
     let jacobian = axes.jacobian();
-    let normal: SMatrix<f64, N, N> = jacobian.tr_mul(&jacobian);
-    let towards = |b: &Vector6<f64>| -> [f64; N] { jacobian.tr_mul(b).into() };
-    if twist.norm() < 1.0
-        && let Some(factor) = Cholesky::new(&normal)
+    if twist.norm() < TAYLOR_TWIST
+        && let Some(inverse) = DampedInverse::new(jacobian, 0.0)
     {
-        let velocity = factor.solve(&towards(twist));
+        let velocity = inverse.solve(twist);
         if largest(&velocity) <= TAYLOR_STEP {
-            return taylor_step(axes, velocity, |b| factor.solve(&towards(b)));
+            return taylor_step(axes, velocity, &inverse);
         }
     }
-    let damped = normal + SMatrix::identity() * (DAMPING * twist.norm_squared());
-    // Not positive definite: all joints are at rest for rounding, and there is no step.
-    let Some(factor) = Cholesky::new(&damped) else { return [0.0; N] };
-    let step = factor.solve(&towards(twist));
+    // Not positive definite in spite of the damping: a twist so small that the damping is lost to rounding.
+    let Some(inverse) = DampedInverse::new(jacobian, DAMPING * twist.norm_squared()) else {
+        return [0.0; N];
+    };
+    let step = inverse.solve(twist);
     let scale = (LONGEST_STEP / largest(&step)).min(1.0);
     step.map(|s| s * scale)
 }
@@ -226,16 +235,16 @@ fn step<const N: usize>(axes: &JointAxes<N>, twist: &Vector6<f64>) -> [f64; N] {
 fn taylor_step<const N: usize>(
     axes: &JointAxes<N>,
     velocity: [f64; N],
-    solve: impl Fn(&Vector6<f64>) -> [f64; N],
+    inverse: &DampedInverse<N>,
 ) -> [f64; N] {
     let stacked = |linear: Vector3, angular: Vector3| {
         Vector6::new(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
     };
     let mut jet = JointJet { velocity, ..JointJet::at_rest([0.0; N]) };
     let bias = axes.forward_jet(&jet);
-    jet.acceleration = solve(&-stacked(bias.linear[1], bias.angular[1]));
+    jet.acceleration = inverse.solve(&-stacked(bias.linear[1], bias.angular[1]));
     let bias = axes.forward_jet(&jet);
-    jet.jerk = solve(&-stacked(bias.linear[2], bias.angular[2]));
+    jet.jerk = inverse.solve(&-stacked(bias.linear[2], bias.angular[2]));
     core::array::from_fn(|i| jet.velocity[i] + jet.acceleration[i] / 2.0 + jet.jerk[i] / 6.0)
 }
 

@@ -9,19 +9,16 @@ use core::f64::consts::PI;
 
 use nalgebra::Quaternion;
 
-use super::{Posture, Shoulder, SphericalWristArm, Wrist, is_finite};
-use crate::geometry::{Pose, Vector3};
+use super::{Posture, Shoulder, SphericalWristArm, Wrist};
+use crate::geometry::{Pose, Vector3, is_finite};
 use crate::kinematics::InverseError;
 use crate::kinematics::limits::principal;
+use crate::kinematics::two_link::{Bend, ON_AXIS, REACH_ROUNDING};
 use crate::math::float::{atan2, sin_cos, sqrt};
 
-/// A length beyond the reach by less than this part of it is rounding. Leaves at most 8e-14 m on a 2 m arm.
-const REACH_ROUNDING: f64 = 4e-14;
 /// The wrist stands at its pole, and joint 4 is free, if tan(θ₅/2) or its reciprocal is below this: what is left
 /// out turns the flange by 2e-13 rad.
 const WRIST_POLE: f64 = 1e-13;
-/// The wrist centre stands on axis 1 or 2, and that joint is free, if nearer to it than this part of the reach.
-pub(super) const ON_AXIS: f64 = 1e-14;
 
 /// What every branch starts from.
 pub(super) struct Target {
@@ -46,14 +43,6 @@ pub(super) struct Side {
     sin1: f64,
     out: f64,
     up: f64,
-}
-
-/// The angle from the upper arm to the line from elbow to wrist: forward (positive) or back.
-#[derive(Clone, Copy)]
-pub(super) struct Bend {
-    cos: f64,
-    /// Not negative. Zero where upper and lower arm are one.
-    pub(super) sin: f64,
 }
 
 /// The two links laid to the wrist centre.
@@ -115,7 +104,7 @@ impl SphericalWristArm {
         let (x, y, b) = (target.centre.x, target.centre.y, g.lateral_offset);
         let radius_squared = x * x + y * y;
         let radius = sqrt(radius_squared);
-        let reach = g.upper_arm + self.elbow_to_wrist;
+        let reach = self.links.reach();
         let up = target.centre.z;
         if radius <= ON_AXIS * reach && b.abs() <= ON_AXIS * reach {
             let (sin1, cos1) = sin_cos(target.free_theta1);
@@ -136,46 +125,19 @@ impl SphericalWristArm {
         Ok(Side { front, singular, theta1, cos1, sin1, out, up })
     }
 
-    /// Law of cosines in the triangle shoulder, elbow, wrist.
+    /// The bend that lays the two links to the wrist centre, forward or back.
     #[inline]
     pub(super) fn bend(&self, side: &Side) -> Result<Bend, InverseError> {
-        let (upper, fore) = (self.geometry.upper_arm, self.elbow_to_wrist);
-        let distance_squared = side.out * side.out + side.up * side.up;
-        let distance = sqrt(distance_squared);
-        let (least, greatest) = ((upper - fore).abs(), upper + fore);
-        let rounding = REACH_ROUNDING * greatest;
-        if distance > greatest + rounding || distance < least - rounding {
-            return Err(InverseError::OutOfReach { distance, least, greatest });
-        }
-        let scale = 0.5 / (upper * fore);
-        let cos = (distance_squared - upper * upper - fore * fore) * scale;
-        // sin² by factors that vanish where the arm is stretched and where it is folded.
-        let stretch = (greatest - distance) * (greatest + distance);
-        let fold = (distance - least) * (distance + least);
-        Ok(Bend { cos: cos.clamp(-1.0, 1.0), sin: sqrt((stretch * fold).max(0.0)) * scale })
+        self.links.bend([side.out, side.up])
     }
 
     /// The two links, bent forward (towards the arm's front) or back.
     #[inline]
     pub(super) fn links(&self, target: &Target, side: &Side, bend: Bend, forward: bool) -> Links {
-        let cos_bend = bend.cos;
-        let sin_bend = if forward { bend.sin } else { -bend.sin };
-        // The wrist as seen from the upper arm, `along` it and `across`.
-        let along = self.geometry.upper_arm + self.elbow_to_wrist * cos_bend;
-        let across = self.elbow_to_wrist * sin_bend;
-        let distance_squared = side.out * side.out + side.up * side.up;
-        let on_axis = ON_AXIS * (self.geometry.upper_arm + self.elbow_to_wrist);
-        let (sin2, cos2) = if distance_squared > on_axis * on_axis {
-            let scale = 1.0 / sqrt((along * along + across * across) * distance_squared);
-            let sin = (side.out * along - side.up * across) * scale;
-            let cos = (side.up * along + side.out * across) * scale;
-            (sin, cos)
-        } else {
-            // Folded flat onto axis 2: joint 2 is free.
-            sin_cos(target.free_theta2)
-        };
-        let sin3 = sin_bend * self.elbow_cos - cos_bend * self.elbow_sin;
-        let cos3 = cos_bend * self.elbow_cos + sin_bend * self.elbow_sin;
+        let bend = if forward { bend } else { Bend { sin: -bend.sin, ..bend } };
+        let (sin2, cos2) = self.links.upper_direction([side.out, side.up], bend, target.free_theta2);
+        let sin3 = bend.sin * self.elbow_cos - bend.cos * self.elbow_sin;
+        let cos3 = bend.cos * self.elbow_cos + bend.sin * self.elbow_sin;
         Links {
             theta2: atan2(sin2, cos2),
             theta3: atan2(sin3, cos3),

@@ -4,19 +4,16 @@
 //! meets another and has no derivatives, unless what it depends on stands still: then the joint does too.
 
 use super::SphericalWristArm;
-use super::inverse::ON_AXIS;
 use crate::geometry::{PoseJet, Vector3};
+use crate::kinematics::two_link::STILL;
 use crate::kinematics::{InverseError, JointJet, Singularity};
 use crate::math::float::{cos, sin, sqrt};
 use crate::math::taylor::Taylor;
 
 /// A measure of distance below this is zero but for rounding.
 const VANISHING: f64 = 1e-12;
-/// A root of what is itself known to rounding, below this: the elbow is bent by less than 1e-7 rad where the wrist
-/// is within 1e-14 of the reach.
+/// A root of what is itself known to rounding, below this.
 const VANISHING_ROOT: f64 = 1e-7;
-/// What varies by less than this part of the whole motion stands still.
-const STILL: f64 = 1e-12;
 
 /// The wrist's motion in the shoulder frame.
 struct WristMotion {
@@ -40,15 +37,14 @@ impl SphericalWristArm {
         let theta = self.thetas(q);
         let motion = self.wrist_motion(base_from_flange);
         let (theta1, out) = self.shoulder_series(&motion, &theta)?;
-        let (theta2, theta3) = self.link_series(&motion, out, &theta)?;
+        let values = [theta[1], theta[2] + self.elbow_angle];
+        let still = STILL * motion.variation;
+        let [theta2, bend] = self.links.series([out, motion.centre[2]], values, still)?;
+        let theta3 = bend + -self.elbow_angle;
         let wrist = motion.rotation.unturned_z(theta1).unturned_y(theta2 + theta3);
         let [theta4, theta5, theta6] = wrist_series(&motion, &wrist, &theta)?;
-        let mut jet = JointJet::at_rest(*q);
-        for (axis, series) in [theta1, theta2, theta3, theta4, theta5, theta6].iter().enumerate() {
-            let derivatives = series.derivatives().map(|d| d * self.geometry.signs[axis]);
-            [jet.velocity[axis], jet.acceleration[axis], jet.jerk[axis]] = derivatives;
-        }
-        Ok(jet)
+        let series = [theta1, theta2, theta3, theta4, theta5, theta6];
+        Ok(JointJet::of_series(*q, core::array::from_fn(|i| series[i] * self.geometry.signs[i])))
     }
 
     #[inline]
@@ -58,7 +54,7 @@ impl SphericalWristArm {
         let [d1, d2, d3] = jet.linear;
         let centre = [0, 1, 2].map(|i| Taylor::from_derivatives(position[i], d1[i], d2[i], d3[i]));
         let rotation = QuaternionSeries::of(&jet);
-        let reach = self.geometry.upper_arm + self.elbow_to_wrist;
+        let reach = self.links.reach();
         let moved = centre.iter().fold(0.0, |most: f64, c| most.max(c.variation())) / reach;
         let variation = moved.max(rotation.variation());
         WristMotion { centre, rotation, variation }
@@ -72,7 +68,7 @@ impl SphericalWristArm {
         theta: &[f64; 6],
     ) -> Result<(Taylor, Taylor), InverseError> {
         let g = &self.geometry;
-        let reach = g.upper_arm + self.elbow_to_wrist;
+        let reach = self.links.reach();
         let [x, y, _] = motion.centre;
         let b = g.lateral_offset;
         let value = self.wrist_radius(theta);
@@ -86,40 +82,6 @@ impl SphericalWristArm {
         let radial = (x.squared() + y.squared()).sqrt_from(value);
         let theta1 = Taylor::angle(x * radial + y * b, y * radial + x * -b, theta[0]);
         Ok((theta1, radial + -g.shoulder_offset))
-    }
-
-    /// θ₂ and θ₃.
-    #[inline]
-    fn link_series(
-        &self,
-        motion: &WristMotion,
-        out: Taylor,
-        theta: &[f64; 6],
-    ) -> Result<(Taylor, Taylor), InverseError> {
-        let (upper, fore) = (self.geometry.upper_arm, self.elbow_to_wrist);
-        let up = motion.centre[2];
-        let bend = theta[2] + self.elbow_angle;
-        let sin_value = sin(bend);
-        let distance_squared = out.squared() + up.squared();
-        let cos_bend = (distance_squared + -(upper * upper + fore * fore)) * (0.5 / (upper * fore));
-        let (sin_bend, theta3) = if sin_value.abs() > VANISHING_ROOT {
-            let sin_bend = (-cos_bend.squared()).sqrt_from(sin_value);
-            (sin_bend, Taylor::angle(cos_bend, sin_bend, bend) + -self.elbow_angle)
-        } else if cos_bend.variation() <= STILL * motion.variation {
-            let on_axis = ON_AXIS * (upper + fore);
-            if distance_squared.value() <= on_axis * on_axis {
-                return Ok((Taylor::constant(theta[1]), Taylor::constant(theta[2])));
-            }
-            (Taylor::constant(sin_value), Taylor::constant(theta[2]))
-        } else {
-            let distance = sin_value.abs();
-            return Err(InverseError::Singular { singularity: Singularity::Elbow, distance });
-        };
-        // The wrist as seen from the upper arm, `along` it and `across`.
-        let along = cos_bend * fore + upper;
-        let across = sin_bend * fore;
-        let theta2 = Taylor::angle(up * along + out * across, out * along - up * across, theta[1]);
-        Ok((theta2, theta3))
     }
 }
 

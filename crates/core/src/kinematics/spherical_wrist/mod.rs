@@ -18,8 +18,9 @@ pub use solutions::{Solution, Solutions};
 
 use nalgebra::{Quaternion, UnitQuaternion};
 
-use super::{InverseError, JointAxes, JointAxis, JointJet, JointLimits, Kinematics, ModelError};
-use crate::geometry::{Pose, PoseJet, Rotation, Vector3};
+use super::two_link::TwoLink;
+use super::{Branches, InverseError, JointAxes, JointAxis, JointJet, JointLimits, Kinematics, ModelError};
+use crate::geometry::{Pose, PoseJet, Vector3, is_finite};
 use crate::math::float::{atan2, hypot, sin_cos};
 
 /// The arm's dimensions (metres) and where its zero lies. Plain data; [`SphericalWristArm::try_new`] checks it.
@@ -92,8 +93,8 @@ impl OpwParameters {
 pub struct SphericalWristArm {
     geometry: SphericalWristGeometry,
     limits: JointLimits<6>,
-    /// Distance from axis 3 to the wrist centre.
-    elbow_to_wrist: f64,
+    /// Upper arm, and the line from axis 3 to the wrist centre.
+    links: TwoLink,
     /// Angle of the wrist centre about axis 3 at θ₃ = 0, with its sine and cosine.
     elbow_angle: f64,
     elbow_sin: f64,
@@ -132,7 +133,7 @@ impl SphericalWristArm {
         let g = &geometry;
         let elbow_to_wrist = hypot(g.elbow_offset, g.forearm);
         Self {
-            elbow_to_wrist,
+            links: TwoLink { upper: g.upper_arm, fore: elbow_to_wrist },
             elbow_angle: atan2(g.elbow_offset, g.forearm),
             elbow_sin: g.elbow_offset / elbow_to_wrist,
             elbow_cos: g.forearm / elbow_to_wrist,
@@ -152,7 +153,7 @@ impl SphericalWristArm {
     /// Distance from axis 3 to the wrist centre, in metres.
     #[must_use]
     pub fn elbow_to_wrist(&self) -> f64 {
-        self.elbow_to_wrist
+        self.links.fore
     }
 
     /// The arm's limits.
@@ -276,6 +277,17 @@ impl Kinematics<6> for SphericalWristArm {
         self.nearest(base_from_flange, seed)
     }
 
+    fn inverse_branches(
+        &self,
+        base_from_flange: &Pose,
+        reference: &[f64; 6],
+    ) -> Result<Branches<[f64; 6], 8>, InverseError> {
+        let mut found = Branches::none(*reference);
+        let within = self.inverse_within_limits(base_from_flange, reference)?;
+        within.as_slice().iter().for_each(|solution| found.push(solution.q));
+        Ok(found)
+    }
+
     fn joint_jet(&self, base_from_flange: &PoseJet, q: &[f64; 6]) -> Result<JointJet<6>, InverseError> {
         self.jet(base_from_flange, q)
     }
@@ -287,11 +299,4 @@ impl Kinematics<6> for SphericalWristArm {
     fn velocity_limits(&self) -> &[f64; 6] {
         self.limits.velocity()
     }
-}
-
-/// Whether every coordinate is a finite number.
-#[inline]
-fn is_finite(pose: &Pose) -> bool {
-    let rotation: &Rotation = &pose.rotation;
-    (pose.translation.vector.sum() + rotation.coords.sum()).is_finite()
 }
