@@ -3,6 +3,7 @@
 //! Exit status: 0 done, 1 failed (one message on stderr), 2 wrong usage.
 
 mod commands;
+mod json_lines;
 
 use std::process::ExitCode;
 
@@ -19,11 +20,13 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     Cell(commands::cell::Arguments),
+    Otg(commands::otg::Arguments),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Cell(arguments) => commands::cell::run(&arguments),
+        Command::Otg(arguments) => commands::otg::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
