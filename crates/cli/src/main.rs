@@ -4,6 +4,7 @@
 
 mod commands;
 mod json_lines;
+mod robot;
 
 use std::process::ExitCode;
 
@@ -20,12 +21,16 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     Cell(commands::cell::Arguments),
+    Fk(commands::fk::Arguments),
+    Ik(commands::ik::Arguments),
     Otg(commands::otg::Arguments),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Cell(arguments) => commands::cell::run(&arguments),
+        Command::Fk(arguments) => commands::fk::run(&arguments),
+        Command::Ik(arguments) => commands::ik::run(&arguments),
         Command::Otg(arguments) => commands::otg::run(&arguments),
     };
     match result {

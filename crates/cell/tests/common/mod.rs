@@ -2,8 +2,8 @@
 
 #![allow(dead_code)]
 
-use seamline::geometry::{Pose, Rotation, Vector3};
 use core::f64::consts::TAU;
+use seamline::geometry::{Pose, Rotation, Vector3};
 use seamline::kinematics::{InverseError, JointJet, Kinematics, Posture, SphericalWristArm, models};
 use seamline::path::Path;
 use seamline_cell::plan::timing::{JointPath, PathLimits, TimingLimits};

@@ -114,7 +114,11 @@ impl<'a> Object<'a> {
     pub(crate) fn object(&self, key: &'static str, keys: &[&str]) -> Result<Option<Object<'a>>, Mistake> {
         let Some(value) = self.get(key) else { return Ok(None) };
         let Value::Object(members) = value else {
-            return Err(Mistake::value(&self.place(key), value, &format!("an object with {}", keys.join(", "))));
+            return Err(Mistake::value(
+                &self.place(key),
+                value,
+                &format!("an object with {}", keys.join(", ")),
+            ));
         };
         match members.keys().find(|member| !keys.contains(&member.as_str())) {
             Some(unknown) => {
@@ -147,7 +151,12 @@ impl<'a> Object<'a> {
     }
 
     /// As [`Object::fill`], for a list that must be there.
-    pub(crate) fn fill_required(&self, key: &str, numbers: &Numbers, into: &mut [f64]) -> Result<(), Mistake> {
+    pub(crate) fn fill_required(
+        &self,
+        key: &str,
+        numbers: &Numbers,
+        into: &mut [f64],
+    ) -> Result<(), Mistake> {
         if self.fill(key, numbers, into)? {
             return Ok(());
         }

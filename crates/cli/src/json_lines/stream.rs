@@ -53,7 +53,10 @@ impl Question {
     }
 
     /// What `answer` makes of the question.
-    pub(crate) fn ask<A>(&self, answer: impl FnOnce(&Object<'_>) -> Result<A, Mistake>) -> Result<A, Mistake> {
+    pub(crate) fn ask<A>(
+        &self,
+        answer: impl FnOnce(&Object<'_>) -> Result<A, Mistake>,
+    ) -> Result<A, Mistake> {
         match &self.content {
             Ok(Value::Object(members)) => answer(&Object::of_line(members)),
             Ok(other) => Err(Mistake::value("the line", other, "an object")),

@@ -41,7 +41,11 @@ impl<const N: usize> Problem for Case<N> {
             duration,
             duration_min_per_axis: trajectory.duration_min().to_vec(),
             synchronized: trajectory.synchronized().iter().map(mode).collect(),
-            samples: self.sample.iter().map(|fraction| Sample::at(&trajectory, fraction * duration)).collect(),
+            samples: self
+                .sample
+                .iter()
+                .map(|fraction| Sample::at(&trajectory, fraction * duration))
+                .collect(),
             profiles: self.profiles.then(|| trajectory.profiles().iter().map(pieces).collect()),
         })
     }

@@ -8,17 +8,8 @@ use crate::json_lines::{Mistake, Numbers, Object};
 /// Most axes of a question.
 const AXES_MAX: usize = 16;
 
-const KEYS: [&str; 9] = [
-    "id",
-    "control",
-    "synchronization",
-    "current",
-    "target",
-    "limits",
-    "duration_min",
-    "sample",
-    "profiles",
-];
+const KEYS: [&str; 9] =
+    ["id", "control", "synchronization", "current", "target", "limits", "duration_min", "sample", "profiles"];
 const STATE_KEYS: [&str; 3] = ["position", "velocity", "acceleration"];
 const LIMIT_KEYS: [&str; 5] =
     ["velocity_max", "velocity_min", "acceleration_max", "acceleration_min", "jerk_max"];
@@ -49,8 +40,7 @@ const LOWER: Numbers = Numbers {
     ..Numbers::ANY
 };
 const SECONDS: Numbers = Numbers { min: 0.0, expected: "seconds, 0 or more", ..Numbers::ANY };
-const FRACTION: Numbers =
-    Numbers { min: 0.0, max: 1.0, expected: "a number from 0 to 1", ..Numbers::ANY };
+const FRACTION: Numbers = Numbers { min: 0.0, max: 1.0, expected: "a number from 0 to 1", ..Numbers::ANY };
 
 /// Reads a question, with as many axes as its current position has.
 pub(super) fn read(line: &Object<'_>) -> Result<Box<dyn Problem>, Mistake> {
