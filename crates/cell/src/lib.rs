@@ -7,11 +7,13 @@
 //! | [`plan`] | from steps to blocks; the speed along a path that keeps every joint limit |
 //! | [`record`] | what a run leaves behind: recording, figures, data for plots |
 //! | [`run`] | one job in one cell: check, run, real time |
+//! | [`robot`] | arms whose number of joints is known only at run time: built in, from a cell file, from URDF |
 //! | [`sim`] | simulated servo drives |
 
 pub mod cell;
 pub mod job;
 pub mod plan;
 pub mod record;
+pub mod robot;
 pub mod run;
 pub mod sim;

@@ -3,7 +3,9 @@
 //! Exit status: 0 done, 1 failed (one message on stderr), 2 wrong usage.
 
 mod commands;
+mod json_lines;
 mod report;
+mod robot;
 
 use std::process::ExitCode;
 
@@ -22,6 +24,9 @@ enum Command {
     Run(commands::run::Arguments),
     Check(commands::check::Arguments),
     Cell(commands::cell::Arguments),
+    Fk(commands::fk::Arguments),
+    Ik(commands::ik::Arguments),
+    Otg(commands::otg::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -29,6 +34,9 @@ fn main() -> ExitCode {
         Command::Run(arguments) => commands::run::run(&arguments),
         Command::Check(arguments) => commands::check::run(&arguments),
         Command::Cell(arguments) => commands::cell::run(&arguments),
+        Command::Fk(arguments) => commands::fk::run(&arguments),
+        Command::Ik(arguments) => commands::ik::run(&arguments),
+        Command::Otg(arguments) => commands::otg::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

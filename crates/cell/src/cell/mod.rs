@@ -30,6 +30,7 @@ pub use frames::{Tool, UserFrame};
 pub use io::{Io, ScriptedInput, UnmetWait, UnscriptedInput};
 pub use job_rules::{JobRules, SpeedUnit, WeldSpeedRule};
 pub use motion::{CartesianLimits, Cycle, DriveBackend, FlexibleMode, Safety};
+pub use nearest::nearest;
 pub use robot::{
     BuiltInRobot, DhConvention, DhRow, DhTable, JOINTS_MAX, Joint, JointKind, OpwParameters, Robot,
     RobotModel, UrdfSource,

@@ -2,5 +2,8 @@
 
 pub(crate) mod cell;
 pub(crate) mod check;
+pub(crate) mod fk;
+pub(crate) mod ik;
 mod inputs;
+pub(crate) mod otg;
 pub(crate) mod run;

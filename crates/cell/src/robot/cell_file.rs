@@ -1,0 +1,80 @@
+//! The arm of a cell file: the model from wherever the file says, the limits from the file.
+
+use seamline::kinematics::{self as core, DhRow, JointKind};
+
+use super::{ArmDescription, ArmError, Chain, Joint, Structure};
+use crate::cell::{self, DhTable, OpwParameters, Robot, RobotModel};
+
+impl ArmDescription {
+    /// The arm of a cell, within the cell's soft limits.
+    ///
+    /// # Errors
+    /// [`ArmError`] for a URDF file that is wrong, or does not fit the cell's joints.
+    pub fn from_cell(robot: &Robot) -> Result<Self, ArmError> {
+        let structure = match &robot.model {
+            RobotModel::BuiltIn(built_in) => Self::built_in(*built_in).fitting(robot)?,
+            RobotModel::Urdf(source) => Self::from_urdf(source)?.fitting(robot)?,
+            RobotModel::Opw(p) => {
+                let OpwParameters { a1, a2, b, c1, c2, c3, c4, offsets, signs } = *p;
+                let parameters = core::OpwParameters { a1, a2, b, c1, c2, c3, c4, offsets, signs };
+                Structure::SphericalWrist(parameters.geometry())
+            }
+            RobotModel::Dh(table) => Structure::Chain(dh_chain(table, robot)),
+        };
+        let joints = robot.joints.iter().map(joint).collect();
+        Ok(Self { name: robot.name.clone(), joints, structure })
+    }
+
+    /// The structure, if the cell's joints are as many and of the same kinds.
+    fn fitting(self, robot: &Robot) -> Result<Structure, ArmError> {
+        let (found, expected) = (self.joints.len(), robot.joints.len());
+        if found != expected {
+            return Err(ArmError::JointCount { found, expected });
+        }
+        for (model, cell) in self.joints.iter().zip(&robot.joints) {
+            let kind = core_kind(cell);
+            if model.kind != kind {
+                let name = cell.name.clone();
+                return Err(ArmError::JointKind {
+                    name,
+                    model: kind_name(model.kind),
+                    cell: kind_name(kind),
+                });
+            }
+        }
+        Ok(self.structure)
+    }
+}
+
+fn dh_chain(table: &DhTable, robot: &Robot) -> Chain {
+    let convention = match table.convention {
+        cell::DhConvention::Standard => core::DhConvention::Standard,
+        cell::DhConvention::Modified => core::DhConvention::Modified,
+    };
+    let row = |(row, joint): (&cell::DhRow, &cell::Joint)| {
+        let cell::DhRow { a, alpha, d, theta } = *row;
+        DhRow { a, alpha, d, theta, kind: core_kind(joint) }
+    };
+    Chain::Dh { convention, rows: table.rows.iter().zip(&robot.joints).map(row).collect() }
+}
+
+fn joint(joint: &cell::Joint) -> Joint {
+    let (position_min, position_max) = joint.soft_limits();
+    let (name, kind) = (joint.name.clone(), core_kind(joint));
+    Joint { name, kind, position_min, position_max, velocity_max: joint.velocity }
+}
+
+fn core_kind(joint: &cell::Joint) -> JointKind {
+    match joint.kind {
+        cell::JointKind::Revolute => JointKind::Revolute,
+        cell::JointKind::Prismatic => JointKind::Prismatic,
+    }
+}
+
+/// The kind as cell files write it.
+fn kind_name(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Revolute => "revolute",
+        JointKind::Prismatic => "prismatic",
+    }
+}

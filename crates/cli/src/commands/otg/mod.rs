@@ -1,0 +1,78 @@
+//! `seamline otg`: the trajectory generator by itself.
+
+mod problem;
+mod request;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use problem::Problem;
+use serde::Serialize;
+
+use crate::json_lines::bench::{self, Times};
+use crate::json_lines::{answer_each, print_line};
+
+const HELP: &str = "\
+Each line is one question of 1 to 16 axes:
+  {\"id\": any, \"control\": C, \"synchronization\": S, \"current\": STATE, \"target\": STATE,
+   \"limits\": {\"velocity_max\": [..], \"velocity_min\": [..], \"acceleration_max\": [..],
+   \"acceleration_min\": [..], \"jerk_max\": [..]}, \"duration_min\": s, \"sample\": [0..1, ..],
+   \"profiles\": true}
+C      \"position\" (default) or \"velocity\", for all axes or as a list
+S      \"none\", \"time\" (default), \"time_if_necessary\", \"phase\" or \"phase_strict\", likewise
+STATE  {\"position\": [..], \"velocity\": [..], \"acceleration\": [..]}; what is missing is 0, except
+       positions; a target position does not matter in velocity control
+A limit that is null or missing is infinite, a minimum that is missing the negated maximum.
+Any unit of length or angle; seconds.
+
+The answer, on one line:
+  {\"id\", \"ok\": true, \"duration\", \"duration_min_per_axis\": [..], \"synchronized\": [..],
+   \"samples\": [{\"time\", \"position\": [..], \"velocity\": [..], \"acceleration\": [..]}, ..]}
+\"sample\" asks for samples at fractions of the duration. \"profiles\" asks for each axis's pieces from
+the current state on, {\"duration\", \"jerk\"}; without jerk limit {\"duration\", \"acceleration\"}, without
+acceleration limit {\"duration\", \"velocity\"}. A question without answer gets
+  {\"id\", \"ok\": false, \"error\": \"..\"}
+and the next one its turn.
+
+Example:
+  echo '{\"id\": 1, \"current\": {\"position\": [0, 0]}, \"target\": {\"position\": [1, 0.5]},
+    \"limits\": {\"velocity_max\": [1, 1], \"acceleration_max\": [2, 2], \"jerk_max\": [10, 10]},
+    \"sample\": [0, 0.5, 1]}' | tr -d '\\n' | seamline otg";
+
+/// Calculate time-optimal, jerk-limited trajectories: JSON lines in, JSON lines out.
+#[derive(Debug, clap::Args)]
+#[command(after_help = HELP)]
+pub(crate) struct Arguments {
+    /// Questions; the standard input if there is no file.
+    file: Option<PathBuf>,
+    /// Measure the bare calculation: prints {"cases", "dofs", "mean_ns", "p99_ns", "max_ns"}.
+    ///
+    /// Reads all questions first, then calculates them all nine times over. What counts for each is the least of its
+    /// nine readings, less the time of reading the clock. One line for each number of axes.
+    #[arg(long)]
+    bench: bool,
+}
+
+#[derive(Serialize)]
+struct Measured {
+    cases: usize,
+    dofs: usize,
+    #[serde(flatten)]
+    times: Times,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let input = arguments.file.as_deref();
+    if !arguments.bench {
+        return answer_each(input, |line| request::read(line)?.answer());
+    }
+    let mut groups: BTreeMap<usize, Vec<Box<dyn Problem>>> = BTreeMap::new();
+    for problem in bench::read_all(input, request::read)? {
+        groups.entry(problem.axes()).or_default().push(problem);
+    }
+    for (dofs, cases) in groups {
+        let times = Times::measure(&cases, |case| case.calculate());
+        print_line(&Measured { cases: cases.len(), dofs, times })?;
+    }
+    Ok(())
+}

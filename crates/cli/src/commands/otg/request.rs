@@ -1,0 +1,129 @@
+//! A question to the generator, as it stands on a line.
+
+use seamline::otg::{Control, Input, Limits, State, Synchronization};
+
+use super::problem::{Case, Problem};
+use crate::json_lines::{Mistake, Numbers, Object};
+
+/// Most axes of a question.
+const AXES_MAX: usize = 16;
+
+const KEYS: [&str; 9] =
+    ["id", "control", "synchronization", "current", "target", "limits", "duration_min", "sample", "profiles"];
+const STATE_KEYS: [&str; 3] = ["position", "velocity", "acceleration"];
+const LIMIT_KEYS: [&str; 5] =
+    ["velocity_max", "velocity_min", "acceleration_max", "acceleration_min", "jerk_max"];
+
+const CONTROLS: [(&str, Control); 2] = [("position", Control::Position), ("velocity", Control::Velocity)];
+const SYNCHRONIZATIONS: [(&str, Synchronization); 5] = [
+    ("none", Synchronization::None),
+    ("time", Synchronization::Time),
+    ("time_if_necessary", Synchronization::TimeIfNecessary),
+    ("phase", Synchronization::Phase),
+    ("phase_strict", Synchronization::PhaseStrict),
+];
+
+/// A target's velocities and accelerations: what is not given is zero.
+const ZERO_IF_NULL: Numbers = Numbers { null: Some(0.0), ..Numbers::ANY };
+/// Positions, some of which may not matter.
+const NAN_IF_NULL: Numbers = Numbers { null: Some(f64::NAN), ..Numbers::ANY };
+const UPPER: Numbers = Numbers {
+    min: 0.0,
+    null: Some(f64::INFINITY),
+    expected: "a number of 0 or more, or null for no limit",
+    ..Numbers::ANY
+};
+const LOWER: Numbers = Numbers {
+    max: 0.0,
+    null: Some(f64::NEG_INFINITY),
+    expected: "a number of 0 or less, or null for no limit",
+    ..Numbers::ANY
+};
+const SECONDS: Numbers = Numbers { min: 0.0, expected: "seconds, 0 or more", ..Numbers::ANY };
+const FRACTION: Numbers = Numbers { min: 0.0, max: 1.0, expected: "a number from 0 to 1", ..Numbers::ANY };
+
+/// Reads a question, with as many axes as its current position has.
+pub(super) fn read(line: &Object<'_>) -> Result<Box<dyn Problem>, Mistake> {
+    line.check_spelling(&KEYS)?;
+    let expected = "a list of 1 to 16 numbers";
+    let current = state(line, "current")?;
+    let position = match current {
+        Some(current) => current.list("position", expected)?,
+        None => None,
+    };
+    let axes = position.ok_or_else(|| Mistake::missing("current.position", expected))?.len();
+    match axes {
+        1 => case::<1>(line),
+        2 => case::<2>(line),
+        3 => case::<3>(line),
+        4 => case::<4>(line),
+        5 => case::<5>(line),
+        6 => case::<6>(line),
+        7 => case::<7>(line),
+        8 => case::<8>(line),
+        9 => case::<9>(line),
+        10 => case::<10>(line),
+        11 => case::<11>(line),
+        12 => case::<12>(line),
+        13 => case::<13>(line),
+        14 => case::<14>(line),
+        15 => case::<15>(line),
+        AXES_MAX => case::<AXES_MAX>(line),
+        _ => Err(Mistake::new(format!("current.position: found a list of {axes}, expected {expected}"))),
+    }
+}
+
+fn case<const N: usize>(line: &Object<'_>) -> Result<Box<dyn Problem>, Mistake> {
+    let mut input = Input::<N>::new(State::default(), State::default(), limits(line)?);
+    line.choices("control", &CONTROLS, &mut input.control)?;
+    line.choices("synchronization", &SYNCHRONIZATIONS, &mut input.synchronization)?;
+    if let Some(current) = state(line, "current")? {
+        current.fill_required("position", &Numbers::ANY, &mut input.current.position)?;
+        current.fill("velocity", &Numbers::ANY, &mut input.current.velocity)?;
+        current.fill("acceleration", &Numbers::ANY, &mut input.current.acceleration)?;
+    }
+    input.target = target(line, &input.control)?;
+    input.duration_min = line.number("duration_min", &SECONDS)?;
+    Ok(Box::new(Case {
+        input,
+        sample: line.numbers("sample", &FRACTION)?.unwrap_or_default(),
+        profiles: line.flag("profiles")?.unwrap_or(false),
+    }))
+}
+
+fn state<'a>(line: &Object<'a>, key: &'static str) -> Result<Option<Object<'a>>, Mistake> {
+    line.object(key, &STATE_KEYS)
+}
+
+/// The target; axes in velocity control need no position.
+fn target<const N: usize>(line: &Object<'_>, control: &[Control; N]) -> Result<State<N>, Mistake> {
+    let mut target = State::at_rest([f64::NAN; N]);
+    if let Some(given) = state(line, "target")? {
+        given.fill("position", &NAN_IF_NULL, &mut target.position)?;
+        given.fill("velocity", &ZERO_IF_NULL, &mut target.velocity)?;
+        given.fill("acceleration", &ZERO_IF_NULL, &mut target.acceleration)?;
+    }
+    for (axis, (position, control)) in target.position.iter_mut().zip(control).enumerate() {
+        if *control == Control::Velocity {
+            *position = 0.0;
+        } else if position.is_nan() {
+            let expected = "a number (only axes in velocity control need none)";
+            return Err(Mistake::missing(&format!("target.position[{axis}]"), expected));
+        }
+    }
+    Ok(target)
+}
+
+fn limits<const N: usize>(line: &Object<'_>) -> Result<Limits<N>, Mistake> {
+    let unlimited = [f64::INFINITY; N];
+    let mut limits = Limits::symmetric(unlimited, unlimited, unlimited);
+    let Some(given) = line.object("limits", &LIMIT_KEYS)? else { return Ok(limits) };
+    given.fill("velocity_max", &UPPER, &mut limits.velocity_max)?;
+    given.fill("acceleration_max", &UPPER, &mut limits.acceleration_max)?;
+    given.fill("jerk_max", &UPPER, &mut limits.jerk_max)?;
+    limits.velocity_min = limits.velocity_max.map(|v| -v);
+    limits.acceleration_min = limits.acceleration_max.map(|a| -a);
+    given.fill("velocity_min", &LOWER, &mut limits.velocity_min)?;
+    given.fill("acceleration_min", &LOWER, &mut limits.acceleration_min)?;
+    Ok(limits)
+}
