@@ -20,7 +20,7 @@ pub struct Outcome {
     pub stage_times: Vec<TimeFigures>,
     /// How late cycles began, in real time.
     pub lateness: Option<TimeFigures>,
-    /// Cycles that took longer than the period.
+    /// Cycles that were late by a period or more, in real time.
     pub overruns: u64,
     /// Samples that did not reach the recording.
     pub samples_lost: u64,
@@ -105,7 +105,7 @@ pub struct Summary {
     pub stage_times_us: Vec<TimeFigures>,
     /// How late cycles began, in real time.
     pub lateness_us: Option<TimeFigures>,
-    /// Cycles that took longer than the period.
+    /// Cycles that were late by a period or more, in real time.
     pub overruns: u64,
     /// Samples that did not reach the recording.
     pub samples_lost: u64,

@@ -120,7 +120,7 @@ fn write_times(f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
     let rows = summary.stage_times_us.iter().chain(&summary.lateness_us).map(row);
     write_table(f, &["<computing time µs", ">p50", ">p99", ">p99.9", ">max"], rows)?;
     if summary.overruns > 0 {
-        writeln!(f, "{} of {} cycles took longer than the period\n", summary.overruns, summary.cycles)?;
+        writeln!(f, "{} of {} cycles were late by a period or more\n", summary.overruns, summary.cycles)?;
     }
     Ok(())
 }

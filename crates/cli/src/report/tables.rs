@@ -85,7 +85,7 @@ pub(super) fn incidents(summary: &Summary) -> String {
     };
     let mut rows: String = summary.faults.iter().map(|incident| row("fault", incident)).collect();
     if summary.overruns > 0 {
-        let text = format!("{} of {} cycles took longer than the period", summary.overruns, summary.cycles);
+        let text = format!("{} of {} cycles were late by a period or more", summary.overruns, summary.cycles);
         rows += &format!("<p class=\"notice\"><b>overruns</b>: {text}</p>");
     }
     rows += &summary.notices.iter().map(|incident| row("notice", incident)).collect::<String>();

@@ -1,8 +1,6 @@
 //! Planned moves through the control cycle and the simulated drives, judged by an independent arm model.
 
-mod machine;
-
-use machine::{Ar2010, Bench, independent_forward, independent_torch, move_to, worst_shares};
+use crate::bench::{Ar2010, Bench, independent_forward, independent_torch, move_to, worst_shares};
 use seamline::control::{Command, Event, Mode};
 use seamline::kinematics::Kinematics;
 use seamline_cell::cell::Cell;

@@ -1,12 +1,10 @@
 //! A million cycles of the whole machine without one allocation.
 #![allow(unsafe_code, reason = "a global allocator cannot be written otherwise; it only counts")]
 
-mod machine;
-
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell as Flag;
 
-use machine::{Ar2010, move_to};
+use crate::bench::{Ar2010, move_to};
 use rtrb::RingBuffer;
 use seamline::control::{Command, Event, Mode};
 use seamline_cell::cell::Cell;
