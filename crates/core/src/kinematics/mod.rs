@@ -26,11 +26,9 @@ mod six_axis;
 mod spherical_wrist;
 mod three_parallel;
 
-pub use axes::{Jacobian, JointAxes, JointAxis};
+pub use axes::{Jacobian, JointAxes, JointAxis, JointKind};
 pub use branches::Branches;
-pub use chain::{
-    DhConvention, DhRow, JointDescription, JointKind, NumericSolution, SerialChain, SolverSettings,
-};
+pub use chain::{DhConvention, DhRow, JointDescription, NumericSolution, SerialChain, SolverSettings};
 pub use error::{InverseError, ModelError, Singularity};
 pub use limits::JointLimits;
 pub use scara::{Handedness, ScaraArm, ScaraGeometry, ScaraSolution, ScaraSolutions};

@@ -1,16 +1,7 @@
 //! How a chain is given: joint by joint, or by a table of Denavit–Hartenberg parameters.
 
 use crate::geometry::{Pose, Rotation, Vector3};
-use crate::kinematics::ModelError;
-
-/// What a joint does along its axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum JointKind {
-    /// Turns about it.
-    Revolute,
-    /// Slides along it.
-    Prismatic,
-}
+use crate::kinematics::{JointKind, ModelError};
 
 /// A joint as URDF describes it: where its frame stands on the link before, and its axis in that frame. Fixed joints
 /// in between multiply into the pose.
