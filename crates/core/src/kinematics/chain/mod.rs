@@ -13,7 +13,7 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::differential::inverse_jet;
 use super::{InverseError, JointAxes, JointAxis, JointJet, JointKind, JointLimits, Kinematics, ModelError};
-use crate::geometry::{Pose, PoseJet, Rotation, Vector3};
+use crate::geometry::{Pose, PoseJet, Vector3};
 use crate::math::float::sin_cos;
 
 /// A serial chain of N joints.
@@ -93,14 +93,23 @@ impl<const N: usize> SerialChain<N> {
     /// # Errors
     /// [`ModelError`] for a number that is not finite or an axis without direction.
     pub fn from_axes(at_zero: &JointAxes<N>, limits: JointLimits<N>) -> Result<Self, ModelError> {
-        let mut last = Vector3::zeros();
+        let mut unit = *at_zero;
+        for (index, axis) in unit.axes.iter_mut().enumerate() {
+            axis.direction = axis.direction.try_normalize(0.0).ok_or(ModelError::Axis { axis: index })?;
+        }
+        Self::of_unit_axes(&unit, limits).checked()
+    }
+
+    /// A chain from its axes at zero, whose directions are of unit length.
+    pub(super) fn of_unit_axes(at_zero: &JointAxes<N>, limits: JointLimits<N>) -> Self {
+        let mut base_from_last = Pose::identity();
         let joints = at_zero.axes.map(|axis| {
-            let parent_from_joint = Pose::from_parts((axis.point - last).into(), Rotation::identity());
-            last = axis.point;
-            JointDescription { parent_from_joint, axis: axis.direction, kind: axis.kind }
+            let base_from_joint = Pose::from_parts(axis.point.into(), description::z_onto(&axis.direction));
+            let parent_from_joint = base_from_last.inverse() * base_from_joint;
+            base_from_last = base_from_joint;
+            (parent_from_joint, axis.kind)
         });
-        let base_from_last = Pose::from_parts(last.into(), Rotation::identity());
-        Self::try_new(&joints, &(base_from_last.inverse() * at_zero.base_from_flange), limits)
+        Self::of_z_joints(&joints, &(base_from_last.inverse() * at_zero.base_from_flange), limits)
     }
 
     /// A chain from a table of Denavit–Hartenberg parameters.

@@ -110,8 +110,8 @@ impl<const N: usize> SerialChain<N> {
     /// [`InverseError::NotConverged`]; [`InverseError::PositionLimit`] where solutions were found, all of them outside
     /// the limits; [`InverseError::NotFinite`].
     ///
-    /// Cost: at most `starts · iterations_per_start` iterations, each of one pass through the chain and one N × N
-    /// factorization.
+    /// Cost: at most `starts · iterations_per_start` iterations, each of one pass through the chain and one or two 6 × 6
+    /// factorizations.
     pub fn solve(
         &self,
         base_from_flange: &Pose,
@@ -162,6 +162,7 @@ impl<const N: usize> SerialChain<N> {
         let mut here = Place::at(self, from, target);
         let (mut milestone, mut since_milestone) = (here.twist.norm(), 0);
         let (mut iterations, mut caution) = (0, 1.0);
+        // At most `iterations_per_start` rounds.
         loop {
             let position_residual = here.twist.fixed_rows::<3>(0).norm();
             let rotation_residual = here.twist.fixed_rows::<3>(3).norm();
