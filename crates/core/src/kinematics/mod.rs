@@ -11,6 +11,18 @@
 //! | [`ScaraArm`] | closed form, both elbows |
 //! | [`SerialChain`] | numeric: damped Newton, then Taylor steps |
 //! | [`SixAxisArm`] | a chain, with the closed form where its structure has one, polished where it has one nearly |
+//!
+//! ```
+//! use seamline::kinematics::{Kinematics, models};
+//!
+//! let arm = models::ar2010();
+//! let q = [0.1, 0.2, -0.3, 0.4, -0.5, 0.6];
+//! let base_from_flange = arm.forward(&q);
+//! let found = arm.inverse_nearest(&base_from_flange, &q).expect("q itself reaches it");
+//! assert!(found.iter().zip(q).all(|(found, q)| (found - q).abs() < 1e-12));
+//! let branches = arm.inverse(&base_from_flange, &q).expect("q is one of them");
+//! assert_eq!(branches.as_slice().len(), 8);
+//! ```
 
 mod axes;
 mod branches;
@@ -26,11 +38,9 @@ mod six_axis;
 mod spherical_wrist;
 mod three_parallel;
 
-pub use axes::{Jacobian, JointAxes, JointAxis};
+pub use axes::{Jacobian, JointAxes, JointAxis, JointKind};
 pub use branches::Branches;
-pub use chain::{
-    DhConvention, DhRow, JointDescription, JointKind, NumericSolution, SerialChain, SolverSettings,
-};
+pub use chain::{DhConvention, DhRow, JointDescription, NumericSolution, SerialChain, SolverSettings};
 pub use error::{InverseError, ModelError, Singularity};
 pub use limits::JointLimits;
 pub use scara::{Handedness, ScaraArm, ScaraGeometry, ScaraSolution, ScaraSolutions};

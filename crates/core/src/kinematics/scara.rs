@@ -166,7 +166,7 @@ impl Kinematics<4> for ScaraArm {
         let axis = |point: Vector3, kind| JointAxis {
             direction,
             point: (base_from_shoulder * nalgebra::Point3::from(point)).coords,
-            prismatic: kind == JointKind::Prismatic,
+            kind,
         };
         let points = [Vector3::zeros(), elbow, last, last];
         JointAxes {

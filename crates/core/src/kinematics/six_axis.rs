@@ -121,6 +121,14 @@ impl SixAxisArm {
     }
 }
 
+impl From<SphericalWristArm> for SixAxisArm {
+    /// The same arm, its branches keeping their names.
+    fn from(arm: SphericalWristArm) -> Self {
+        let chain = SerialChain::of_unit_axes(&arm.axes(&[0.0; 6]), *arm.limits());
+        Self { chain, method: InverseMethod::Exact(ClosedForm::SphericalWrist(arm)) }
+    }
+}
+
 impl Kinematics<6> for SixAxisArm {
     fn forward(&self, q: &[f64; 6]) -> Pose {
         match &self.method {

@@ -84,6 +84,16 @@ fn other_arms_are_not_taken_for_one() {
     ));
 }
 
+#[test]
+fn a_named_arm_stays_itself() {
+    let arm = SixAxisArm::from(models::ar2010());
+    assert_eq!(arm.method(), &InverseMethod::Exact(ClosedForm::SphericalWrist(models::ar2010())));
+    let q = [0.1, 0.2, 0.3, 0.4, -0.5, 0.6];
+    assert!(pose_error(&arm.chain().forward(&q), &arm.forward(&q)).0 < 1e-14);
+    let nearest = arm.inverse_nearest(&arm.forward(&q), &q).unwrap();
+    assert_eq!(Ok(nearest), models::ar2010().inverse_nearest(&arm.forward(&q), &q));
+}
+
 /// 20 calibrations (axes off by up to 0.5 mm and 1 mrad), 100 poses each: every branch of the nominal arm is met on the
 /// real one to 1e-12, and nearest gives the joints back.
 #[test]

@@ -5,7 +5,7 @@ use crate::geometry::{Pose, Rotation, Vector3};
 use crate::kinematics::closed_form::TwoLink;
 use crate::kinematics::three_parallel::ThreeParallelGeometry;
 use crate::kinematics::{
-    JointAxes, JointAxis, Kinematics, SphericalWristArm, SphericalWristGeometry, ThreeParallelArm,
+    JointAxes, JointAxis, JointKind, Kinematics, SphericalWristArm, SphericalWristGeometry, ThreeParallelArm,
 };
 use crate::math::float::{atan2, hypot, sin_cos};
 
@@ -68,7 +68,7 @@ struct Lines<'a> {
 
 impl Lines<'_> {
     fn all_turn(&self) -> bool {
-        self.axes.iter().all(|axis| !axis.prismatic)
+        self.axes.iter().all(|axis| axis.kind == JointKind::Revolute)
     }
 
     fn square(&self, a: usize, b: usize) -> bool {

@@ -19,7 +19,9 @@ pub use solutions::{Solution, Solutions};
 use nalgebra::{Quaternion, UnitQuaternion};
 
 use super::closed_form::TwoLink;
-use super::{Branches, InverseError, JointAxes, JointAxis, JointJet, JointLimits, Kinematics, ModelError};
+use super::{
+    Branches, InverseError, JointAxes, JointAxis, JointJet, JointKind, JointLimits, Kinematics, ModelError,
+};
 use crate::geometry::{Pose, PoseJet, Vector3, is_finite};
 use crate::math::float::{atan2, hypot, sin_cos};
 
@@ -265,8 +267,11 @@ impl Kinematics<6> for SphericalWristArm {
             (turned([-sin4 * cos23, cos4, sin4 * sin23]), centre),
             (turned(last), centre),
         ];
-        let axis =
-            |i: usize| JointAxis { direction: lines[i].0 * g.signs[i], point: lines[i].1, prismatic: false };
+        let axis = |i: usize| JointAxis {
+            direction: lines[i].0 * g.signs[i],
+            point: lines[i].1,
+            kind: JointKind::Revolute,
+        };
         JointAxes {
             axes: core::array::from_fn(axis),
             base_from_flange: base_from_wrist * g.wrist_from_flange,
