@@ -218,7 +218,8 @@ impl RampFrom {
 /// Most steps of the search for the cruise velocity. From a guess on the right side Newton's method converges in five or six; a search that
 /// takes longer is left to the mixture, which needs none.
 const MAX_STEPS: usize = 16;
-/// As in the search for the extreme motions: the step after one this small is exact.
+/// The step after one of size d is about d² |P″|/(2 P′), and with |P″| ≤ 1/x₁ + 1/x₂ and P′ ≥ (x₁ + x₂)/2 at most d²/(x₁ x₂).
+/// With d this fraction of x₁ x₂ it is rounding.
 const LAST_STEP: f64 = 1e-8;
 /// Displacements that differ by this fraction of their terms are one.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -245,8 +246,7 @@ impl Ramps {
             }
             let step = excess / slope;
             w -= step;
-            let size = larger(r1.x * r1.x, r2.x * r2.x);
-            if step.abs() <= LAST_STEP * size || excess.abs() <= ROUNDING * terms {
+            if step.abs() <= LAST_STEP * (r1.x * r2.x) || excess.abs() <= ROUNDING * terms {
                 let (first, second) = (first.to(w), second.to(w));
                 let rest = t - first.duration - second.duration;
                 let good = rest >= 0.0 && v_min <= w && w <= v_max;
