@@ -76,8 +76,8 @@ impl<const N: usize> Envelope<N> {
     /// # Errors
     /// The first [`Fault`] found; the command must then not be sent.
     pub fn judge(&self, position: &[f64; N], tcp: &Vector3) -> Result<(), Fault> {
-        for axis in 0..N {
-            self.judge_axis(axis, position[axis])?;
+        for (axis, value) in position.iter().enumerate() {
+            self.judge_axis(axis, *value)?;
         }
         let inside = |k: usize| tcp[k] >= self.workspace.low[k] && tcp[k] <= self.workspace.high[k];
         if (0..3).all(inside) { Ok(()) } else { Err(Fault::Workspace { position: *tcp }) }
