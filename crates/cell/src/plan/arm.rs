@@ -24,6 +24,13 @@ pub trait PlanningArm<const N: usize>: Kinematics<N> + Clone {
         reference: &[f64; N],
     ) -> Result<[f64; N], InverseError>;
 
+    /// The joints that reach a flange pose on the branch of `seed`: no singularity lies between. Near a singularity the
+    /// nearest joints may lie on another branch; these do not.
+    ///
+    /// # Errors
+    /// [`InverseError`] where this branch does not reach the pose, or not within the limits.
+    fn same_branch(&self, base_from_flange: &Pose, seed: &[f64; N]) -> Result<[f64; N], InverseError>;
+
     /// The configuration of joint positions.
     fn configuration(&self, q: &[f64; N]) -> job::Configuration;
 }
@@ -42,6 +49,15 @@ impl PlanningArm<6> for SphericalWristArm {
             Some(configuration) => self.inverse_in_configuration(base_from_flange, &configuration, reference),
             None => self.inverse_nearest(base_from_flange, reference),
         }
+    }
+
+    fn same_branch(&self, base_from_flange: &Pose, seed: &[f64; 6]) -> Result<[f64; 6], InverseError> {
+        let posture = self.posture(seed);
+        let all = self.inverse_within_limits(base_from_flange, seed)?;
+        let same =
+            all.as_slice().iter().find(|solution| solution.posture == posture || solution.at_wrist_pole);
+        // The branch ends here, or leaves the limits: the nearest joints show by how much the arm would have to jump.
+        same.map_or_else(|| self.inverse_nearest(base_from_flange, seed), |solution| Ok(solution.q))
     }
 
     fn configuration(&self, q: &[f64; 6]) -> job::Configuration {

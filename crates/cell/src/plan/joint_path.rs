@@ -1,9 +1,10 @@
 //! A tool path as the joints see it: one branch from start to end.
 
 use seamline::geometry::{Pose, PoseJet};
-use seamline::kinematics::{InverseError, JointJet, Kinematics};
+use seamline::kinematics::{InverseError, JointJet};
 use seamline::path::{Measure, Path};
 
+use super::arm::PlanningArm;
 use super::timing::JointPath;
 
 /// Greatest change of a joint between two places of the table, rad: far below what separates two branches.
@@ -13,6 +14,9 @@ const SPACING: f64 = 5e-3;
 const TURN_SPACING: f64 = 0.02;
 /// A step is halved this often before a change is called a jump: 5 mm become 5 nm.
 const HALVINGS: u32 = 20;
+/// At the last halving a branch goes on in another one if no joint changes by more than this, rad: the path crosses the
+/// singularity itself, missing it by a hundredth of the smallest step at most, and the joints do not feel it.
+const CROSSING: f64 = 1e-2;
 /// A joint this near to its limit, in rad, is what made the branch end.
 const AT_LIMIT: f64 = 1e-3;
 
@@ -45,7 +49,7 @@ pub struct PathJoints<'a, const N: usize, K> {
     table: Vec<(f64, [f64; N])>,
 }
 
-impl<'a, const N: usize, K: Kinematics<N>> PathJoints<'a, N, K> {
+impl<'a, const N: usize, K: PlanningArm<N>> PathJoints<'a, N, K> {
     /// Follows the path from joint positions `start` on.
     ///
     /// # Errors
@@ -94,7 +98,11 @@ impl<'a, const N: usize, K: Kinematics<N>> PathJoints<'a, N, K> {
                     step = (step * 2.0).min(whole);
                 }
                 result if step < whole * 0.5_f64.powi(HALVINGS as i32) => {
-                    return Err((next, self.reason(result.map(|(q, _)| q))));
+                    let Some(q) = self.crossing(next) else {
+                        return Err((next, self.reason(result.map(|(q, _)| q))));
+                    };
+                    self.table.push((next, q));
+                    *at = next;
                 }
                 _ => step /= 2.0,
             }
@@ -107,11 +115,20 @@ impl<'a, const N: usize, K: Kinematics<N>> PathJoints<'a, N, K> {
         self.table.last().map_or(&[0.0; N], |(_, q)| q)
     }
 
-    /// The joints at `s` nearest to the last ones, and the greatest change.
+    /// The joints at `s` on the last ones' branch, and the greatest change.
     fn solve(&self, s: f64) -> Result<([f64; N], f64), InverseError> {
-        let q = self.kinematics.inverse_nearest(&(self.path.pose(s) * self.tcp_from_flange), self.last())?;
-        let change = q.iter().zip(self.last()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        Ok((q, change))
+        let q = self.kinematics.same_branch(&(self.path.pose(s) * self.tcp_from_flange), self.last())?;
+        Ok((q, self.change(&q)))
+    }
+
+    /// The joints at `s` on whatever branch, if they hardly differ from the last ones.
+    fn crossing(&self, s: f64) -> Option<[f64; N]> {
+        let pose = self.path.pose(s) * self.tcp_from_flange;
+        self.kinematics.inverse_nearest(&pose, self.last()).ok().filter(|q| self.change(q) < CROSSING)
+    }
+
+    fn change(&self, q: &[f64; N]) -> f64 {
+        q.iter().zip(self.last()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
     }
 
     fn reason(&self, result: Result<[f64; N], InverseError>) -> FollowError {
@@ -154,7 +171,7 @@ impl<'a, const N: usize, K: Kinematics<N>> PathJoints<'a, N, K> {
     }
 }
 
-impl<const N: usize, K: Kinematics<N>> JointPath<N> for PathJoints<'_, N, K> {
+impl<const N: usize, K: PlanningArm<N>> JointPath<N> for PathJoints<'_, N, K> {
     type Error = InverseError;
 
     fn length(&self) -> f64 {
@@ -165,5 +182,40 @@ impl<const N: usize, K: Kinematics<N>> JointPath<N> for PathJoints<'_, N, K> {
         let flange = self.flange(s);
         let q = self.kinematics.inverse_nearest(&flange.pose, &self.seed(s))?;
         self.kinematics.joint_jet(&flange, &q)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use seamline::geometry::{Rotation, Vector3};
+    use seamline::kinematics::{Kinematics, models};
+
+    use super::*;
+
+    /// Lines past the wrist's pole at distances from 0.1 rad to 1e-5 rad, and right through it: the joints change by
+    /// less than a step from place to place, keep their branch beside the pole and change it only on it.
+    #[test]
+    fn a_line_past_the_wrist_pole_keeps_its_branch() {
+        let arm = models::ar2010();
+        for distance in [0.1, 1e-2, 1e-3, 1e-4, 1e-5, 0.0] {
+            // The flange tilts by the path's own turning, so that q5 passes `distance` in the middle.
+            let middle = arm.forward(&[0.1, 0.2, 0.1, 0.0, distance, 0.3]);
+            let tilt = middle.rotation * Vector3::x();
+            let turned = |angle: f64| {
+                let turn = Rotation::from_scaled_axis(tilt * angle);
+                Pose::from_parts(middle.translation, turn * middle.rotation)
+            };
+            let (start, end) = (turned(-0.4), turned(0.4));
+            let path = Path::line(&start, &Pose::from_parts(end.translation, end.rotation));
+            let seed = arm.inverse_nearest(&start, &[0.1, 0.2, 0.1, -1.5, 0.4, 1.8]).unwrap();
+            let joints = PathJoints::follow(&arm, &path, &Pose::identity(), &seed);
+            let joints = joints.unwrap_or_else(|error| panic!("{distance}: {error:?}"));
+            for pair in joints.table.windows(2) {
+                let change = (0..6).map(|k| (pair[1].1[k] - pair[0].1[k]).abs()).fold(0.0, f64::max);
+                assert!(change <= STEP, "{distance}: {change} at {}", pair[0].0);
+            }
+            let (first, last) = (joints.table[0].1[4], joints.end()[4]);
+            assert_eq!(first * last > 0.0, distance > 0.0, "{distance}: q5 from {first} to {last}");
+        }
     }
 }
