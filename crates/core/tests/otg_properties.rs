@@ -2,7 +2,7 @@
 
 mod otg_support;
 
-use otg_support::cases::{self, Distribution, random_input};
+use otg_support::cases::{self, Distribution, mirrored, random_input, reversed};
 use otg_support::judge::judge;
 use otg_support::random::Random;
 use seamline::otg::{Control, Error, Input, Limits, Quantity, State, Synchronization, calculate};
@@ -18,33 +18,6 @@ fn close(a: f64, b: f64, tolerance: f64) -> bool {
 /// Distributions whose starts may also be targets.
 fn viable() -> impl Iterator<Item = Distribution> {
     cases::ALL.into_iter().filter(|d| !matches!(d, Distribution::Brake | Distribution::Whole))
-}
-
-/// The problem seen in a mirror.
-fn mirrored(input: &Input<1>) -> Input<1> {
-    let turn = |s: &State<1>| State {
-        position: s.position.map(|x| -x),
-        velocity: s.velocity.map(|x| -x),
-        acceleration: s.acceleration.map(|x| -x),
-    };
-    let l = &input.limits;
-    let limits = Limits {
-        velocity_max: l.velocity_min.map(|x| -x),
-        velocity_min: l.velocity_max.map(|x| -x),
-        acceleration_max: l.acceleration_min.map(|x| -x),
-        acceleration_min: l.acceleration_max.map(|x| -x),
-        ..*l
-    };
-    Input { current: turn(&input.current), target: turn(&input.target), limits, ..*input }
-}
-
-/// The problem with time running backwards: ends change places, velocities and velocity limits their signs.
-fn reversed(input: &Input<1>) -> Input<1> {
-    let turn = |s: &State<1>| State { velocity: s.velocity.map(|x| -x), ..*s };
-    let l = &input.limits;
-    let limits =
-        Limits { velocity_max: l.velocity_min.map(|x| -x), velocity_min: l.velocity_max.map(|x| -x), ..*l };
-    Input { current: turn(&input.target), target: turn(&input.current), limits, ..*input }
 }
 
 /// The problem in a unit of length 1/`length`, and of time 1/`time`.

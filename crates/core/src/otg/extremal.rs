@@ -291,7 +291,7 @@ impl Family {
         if self.v_max < f64::INFINITY {
             let mut limited = self.at_velocity_limit();
             if p >= limited.p {
-                limited.lengthen((p - limited.p) / self.v_max);
+                limited.lengthen((p - limited.p) / self.v_max.abs()); // for ever if that is zero, of either sign
                 return limited;
             }
             highest = limited.e;
