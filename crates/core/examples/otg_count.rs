@@ -3,6 +3,7 @@
 //! `valgrind --tool=callgrind --toggle-collect='*count::calculations*' target/release/examples/otg_count`,
 //! (position control of moving axes; with `rest` from rest to rest, with `velocity` velocity control),
 //! and the instructions reported divided by 2000 are those of one calculation with 6 axes.
+#![allow(clippy::print_stdout)] // a program
 
 #[path = "../tests/otg_support/mod.rs"]
 mod otg_support;

@@ -101,6 +101,8 @@ pub(super) struct Axis {
     target: Point,
     /// The jerk limit, where the problem is normalised by it; otherwise 1.
     scale: f64,
+    /// Of the coordinates.
+    size: f64,
     at_target: bool,
     velocity_control: bool,
 }
@@ -113,6 +115,7 @@ impl Axis {
         start: Point { p: 0.0, v: 0.0, a: 0.0 },
         target: Point { p: 0.0, v: 0.0, a: 0.0 },
         scale: 0.0,
+        size: 0.0,
         at_target: false,
         velocity_control: false,
     };
@@ -122,6 +125,7 @@ impl Axis {
         self.start = input.current;
         self.target = input.target;
         self.scale = 1.0;
+        self.size = input.coordinates;
         self.at_target = input.is_at_target();
         self.velocity_control = input.control == Control::Velocity;
         profile.begin(input.target, Order::Third);
@@ -245,10 +249,10 @@ impl Axis {
     }
 
     /// Adds the motion of a solution to the profile.
-    pub(super) fn write(&self, solution: &Solution, profile: &mut Profile) {
-        match (&self.motion, solution) {
+    pub(super) fn write(&self, solution: &Solution, axis: usize, profile: &mut Profile) -> Result<(), Error> {
+        let joined = match (&self.motion, solution) {
             (Motion::Third(third), Solution::Earliest(arrival)) => {
-                self.draft(profile).arrival(&third.problem, arrival);
+                self.draft(profile).arrival(&third.problem, arrival)
             }
             (Motion::Third(third), Solution::Later(later)) => {
                 self.draft(profile).later(&third.problem, later)
@@ -258,17 +262,21 @@ impl Axis {
                 self.write_velocity(second, cruise, profile)
             }
             (Motion::Only(t), Solution::Only) => self.write_only(*t, profile),
-            // There already: no brake either.
-            _ => profile.begin(self.target, profile.order()),
-        }
+            _ => {
+                // There already: no brake either.
+                profile.begin(self.target, profile.order());
+                true
+            }
+        };
+        if joined { Ok(()) } else { Err(Error::OutOfRange { axis }) }
     }
 
     fn draft<'a>(&self, profile: &'a mut Profile) -> Draft<'a> {
-        Draft { profile, now: self.start, target: self.target, scale: self.scale }
+        Draft { profile, now: self.start, target: self.target, scale: self.scale, size: self.size }
     }
 
     /// Position control without jerk limit: two ramps and a cruise.
-    fn write_second(&self, second: &SecondOrder, cruise: &Cruise, profile: &mut Profile) {
+    fn write_second(&self, second: &SecondOrder, cruise: &Cruise, profile: &mut Profile) -> bool {
         let mut now = self.start;
         for (to, duration) in [(cruise.w, cruise.first), (cruise.w, cruise.cruise), (second.vf, cruise.last)]
         {
@@ -276,10 +284,11 @@ impl Axis {
             profile.push_forward(&Piece { duration, jerk: 0.0, acceleration }, 1.0, &mut now);
             now.v = to; // jumps where the acceleration is unlimited
         }
+        profile.joins(now, Point { v: now.v, ..self.target }, self.size)
     }
 
     /// Velocity control: two ramps of the acceleration and a hold, or a hold alone if the jerk is unlimited.
-    fn write_velocity(&self, second: &SecondOrder, cruise: &Cruise, profile: &mut Profile) {
+    fn write_velocity(&self, second: &SecondOrder, cruise: &Cruise, profile: &mut Profile) -> bool {
         let mut now = self.start;
         let ramp = |to: f64, from: f64, duration: f64| {
             let jerk = if to >= from { 1.0 } else { -1.0 };
@@ -292,16 +301,19 @@ impl Axis {
         ] {
             profile.push_forward(&piece, self.scale, &mut now);
         }
-        profile.end_at(Point { p: now.p, ..self.target });
+        let end = Point { p: now.p, ..self.target };
+        profile.end_at(end);
+        profile.duration() == 0.0 || profile.joins(now, end, self.size)
     }
 
     /// The only motion that a zero limit leaves.
-    fn write_only(&self, duration: f64, profile: &mut Profile) {
+    fn write_only(&self, duration: f64, profile: &mut Profile) -> bool {
         let mut now = self.start;
         profile.push_forward(&Piece { duration, jerk: 0.0, acceleration: now.a }, 1.0, &mut now);
         if self.velocity_control {
             profile.end_at(Point { p: now.p, ..self.target });
         }
+        profile.joins(now, self.target, self.size) || self.velocity_control
     }
 }
 

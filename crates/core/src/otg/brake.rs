@@ -34,8 +34,8 @@ impl Brake<'_> {
     /// Moves the start of the problem inside its limits.
     pub(super) fn apply(&mut self) {
         self.apply_acceleration();
-        let above = highest_velocity(self.problem) > self.problem.v_max;
-        let below = lowest_velocity(self.problem) < self.problem.v_min;
+        let above = too_fast(self.problem);
+        let below = too_fast(&self.problem.mirror());
         if above && (self.problem.a0 > 0.0 || !below) {
             for step in slow_down(self.problem) {
                 self.push(step.duration, step.jerk, step.acceleration);
@@ -63,16 +63,16 @@ impl Brake<'_> {
     }
 }
 
-/// The velocity at which the acceleration, brought to zero as fast as can be, ends.
-fn highest_velocity(problem: &Problem) -> f64 {
+/// Whether the velocity is, or cannot but get, above its limit by more than rounding: where it ends if the acceleration is brought
+/// to zero as fast as can be.
+fn too_fast(problem: &Problem) -> bool {
     let a = larger(problem.a0, 0.0);
-    problem.v0 + 0.5 * a * a
+    let change = 0.5 * a * a;
+    problem.v0 + change > problem.v_max + ROUNDING * (problem.v0.abs() + change)
 }
 
-fn lowest_velocity(problem: &Problem) -> f64 {
-    let a = smaller(problem.a0, 0.0);
-    problem.v0 - 0.5 * a * a
-}
+/// Rounding of a velocity, as a fraction of its terms.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A piece of the brake, with the acceleration at its end.
 #[derive(Debug, Clone, Copy)]

@@ -53,8 +53,10 @@ pub(super) struct Family {
     c: f64,
     /// K, displacement of the outer rises beyond zero acceleration.
     k: f64,
-    /// a_f − a₀.
-    a_change: f64,
+    /// The start, and the acceleration at the end.
+    v0: f64,
+    a0: f64,
+    af: f64,
     /// Acceleration limits.
     a_max: f64,
     drop: f64,
@@ -104,8 +106,8 @@ pub(super) struct Shape {
 /// Newton's method doubles the number of good digits with each step, so that the step after one this small is exact.
 const LAST_STEP: f64 = 1e-8;
 
-/// Displacements that differ by this fraction are one.
-const ROUNDING: f64 = f64::EPSILON;
+/// Rounding of a sum, as a fraction of its terms.
+const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
 /// Most steps of the root search. Newton steps converge within 20 where the displacement is convex, which is everywhere but on a hump; there the
 /// bracket is halved where a step leaves it: 60 halvings exhaust 64-bit floats.
@@ -144,7 +146,9 @@ impl Family {
             v_last,
             c,
             k,
-            a_change: af - a0,
+            v0,
+            a0,
+            af,
             a_max,
             drop,
             v_max,
@@ -152,9 +156,9 @@ impl Family {
             island: None,
             reversed,
         };
-        // The peak must reach a₀: x² = n² + C ≥ a₀².
+        // The peak must reach a₀: x² = n² + C ≥ a₀². Where r is rounding only, there is no gap between island and main arc.
         let r_squared = a0 * a0 - c;
-        if a0 > 0.0 && r_squared > 0.0 {
+        if a0 > 0.0 && r_squared > ROUNDING * (a0 * a0 + af * af + v0.abs() + vf.abs()) {
             let r = sqrt(r_squared);
             if af >= r {
                 family.island = Some((-af, -r));
@@ -182,6 +186,11 @@ impl Family {
             (self.a_max, self.a_max + gain / self.a_max)
         };
         let w = self.v_last + y;
+        let p = if e < 0.0 {
+            self.displacement_of_short(x, n, t_peak - 2.0 * x)
+        } else {
+            0.5 * (self.v_first + w) * t_peak + (w + self.v_last) * e + self.k
+        };
         Extremal {
             e,
             x,
@@ -189,10 +198,24 @@ impl Family {
             t_peak,
             w,
             cruise: 0.0,
-            p: 0.5 * (self.v_first + w) * t_peak + (w + self.v_last) * e + self.k,
-            t: t_peak + 2.0 * e + self.a_change,
+            p,
+            t: t_peak + 2.0 * e + (self.af - self.a0),
             slope: w + 0.5 * x * n,
         }
+    }
+
+    /// The displacement, piece by piece, where the acceleration stays above zero: such a motion may be much shorter than the rises drawn out to
+    /// zero acceleration, and would drown in their rounding.
+    fn displacement_of_short(&self, x: f64, n: f64, hold: f64) -> f64 {
+        let Self { v0, a0, af, .. } = *self;
+        let (rise, fall, last) = (x - a0, x + n, n + af);
+        let v1 = v0 + 0.5 * rise * (a0 + x);
+        let v2 = v1 + hold * x;
+        let v3 = v2 + 0.5 * fall * (x - n);
+        rise * (v0 + rise * (2.0 * a0 + x) * SIXTH)
+            + hold * (v1 + 0.5 * hold * x)
+            + fall * (v2 + fall * (2.0 * x - n) * SIXTH)
+            + last * (v3 + last * (af - 2.0 * n) * SIXTH)
     }
 
     /// Where the main arc starts: the shortest time from which on every time is possible.
@@ -234,7 +257,7 @@ impl Family {
     /// The closed-form inverse of the duration, piece by piece.
     #[inline]
     fn parameter_at_duration(&self, t: f64) -> f64 {
-        let t = t - self.a_change; // of peak and valley, both drawn out to zero acceleration
+        let t = t - (self.af - self.a0); // of peak and valley, both drawn out to zero acceleration
         let s = 0.5 * t;
         if s <= 0.0 {
             return 0.0;
@@ -268,7 +291,7 @@ impl Family {
         if self.v_max < f64::INFINITY {
             let mut limited = self.at_velocity_limit();
             if p >= limited.p {
-                limited.lengthen((p - limited.p) / self.v_max);
+                limited.lengthen((p - limited.p) / self.v_max.abs()); // for ever if that is zero, of either sign
                 return limited;
             }
             highest = limited.e;
@@ -291,7 +314,11 @@ impl Family {
             return Some(extremal);
         }
         let end = self.at(last);
-        (end.p >= p).then(|| self.solve(p, from.e, last, last))
+        if end.p >= p {
+            Some(self.solve(p, from.e, last, last))
+        } else {
+            (end.p >= p - resolution).then_some(end)
+        }
     }
 
     /// Before the displacement falls and rises for good it may rise once, with the acceleration above zero throughout.
@@ -301,11 +328,10 @@ impl Family {
             return None;
         }
         let top = self.at(self.hump(from.e, last)?);
-        if p > top.p + resolution {
-            return None;
+        if p >= top.p - resolution {
+            // At the top two arrivals merge into one, and rounding must not lose both.
+            return (p <= top.p + resolution).then_some(top);
         }
-        // At the top two arrivals merge into one, and rounding must not lose both.
-        let p = smaller(p, top.p - resolution);
         Some(self.solve(p, from.e, top.e, 0.5 * (from.e + top.e)))
     }
 
@@ -334,20 +360,24 @@ impl Family {
         (n > first && n <= last).then_some(n)
     }
 
-    /// Where peak and valley are both at their limits the displacement is quadratic in w.
+    /// Where peak and valley are both at their limits the displacement is quadratic in w: dp/dt = w − a m/2, and
+    /// dt/dw = 1/a + 1/m.
     fn both_saturated(&self, p: f64, highest: f64) -> Option<Extremal> {
         let (a, m) = (self.a_max, self.drop);
         let y = larger(m * m, a * a - self.c);
         let e = 0.5 * (m + y / m);
-        if !(e < highest && e < f64::INFINITY) || self.at(e).p > p {
+        if !(e < highest && e < f64::INFINITY) {
             return None;
         }
-        let quadratic = 0.5 * (1.0 / a + 1.0 / m);
-        let linear = 0.5 * (a + m);
-        let constant =
-            0.5 * (self.v_first * (a - self.v_first / a) + self.v_last * (m - self.v_last / m)) + self.k - p;
-        let w = -2.0 * constant / (linear + sqrt(larger(linear * linear - 4.0 * quadratic * constant, 0.0)));
-        Some(self.at(between(0.5 * (m + (w - self.v_last) / m), e, highest)))
+        let node = self.at(e);
+        if node.p > p {
+            return None;
+        }
+        let g = node.slope;
+        let q = 2.0 * (p - node.p) / (1.0 / a + 1.0 / m);
+        let root = sqrt(g * g + q);
+        let more = if g > 0.0 { q / (g + root) } else { root - g }; // of w
+        Some(self.at(smaller(e + 0.5 * more / m, highest)))
     }
 
     /// A parameter ≥ 0 beyond which the displacement is above `p`, within a small factor of the least.
@@ -398,7 +428,7 @@ impl Family {
             }
             let moved = (next - now.e).abs();
             now = self.at(next);
-            if moved <= LAST_STEP * now.x {
+            if moved <= LAST_STEP * (now.x + now.n) {
                 break;
             }
         }

@@ -40,6 +40,8 @@ pub(super) struct Draft<'a> {
     pub(super) target: Point,
     /// The jerk limit.
     pub(super) scale: f64,
+    /// Of the coordinates.
+    pub(super) size: f64,
 }
 
 impl Draft<'_> {
@@ -54,13 +56,15 @@ impl Draft<'_> {
         self.forward(duration, 0.0, 0.0);
     }
 
+    /// The rest of the motion. Whether both parts meet.
     #[inline]
-    fn backward<const K: usize>(&mut self, pieces: &[Piece; K]) {
-        self.profile.push_backward(pieces, self.scale, self.target);
+    fn backward<const K: usize>(&mut self, pieces: &[Piece; K]) -> bool {
+        let start = self.profile.push_backward(pieces, self.scale, self.target);
+        self.profile.joins(self.now, start, self.size)
     }
 
-    /// The motion of an extreme arrival.
-    pub(super) fn arrival(&mut self, problem: &Problem, arrival: &Arrival) {
+    /// The motion of an extreme arrival. False if the numbers have overflowed.
+    pub(super) fn arrival(&mut self, problem: &Problem, arrival: &Arrival) -> bool {
         let Arrival { sign, shape, .. } = *arrival;
         let motion = Extreme { shape, sign, a0: problem.a0, af: problem.af };
         let [rise, hold, fall, end_of_fall, last_hold, last_rise] = motion.pieces();
@@ -70,18 +74,18 @@ impl Draft<'_> {
         if shape.cruise > 0.0 {
             self.cruise(shape.cruise, sign * shape.velocity);
         }
-        self.backward(&[end_of_fall, last_hold, last_rise]);
+        self.backward(&[end_of_fall, last_hold, last_rise])
     }
 
-    /// The motion of an arrival later than the earliest.
-    pub(super) fn later(&mut self, problem: &Problem, later: &Later) {
+    /// The motion of an arrival later than the earliest. False if the numbers have overflowed.
+    pub(super) fn later(&mut self, problem: &Problem, later: &Later) -> bool {
         match later {
             Later::Ramps(ramps) => self.ramps(problem, ramps),
             Later::Mixture(mixture) => self.mixture(problem, mixture),
         }
     }
 
-    fn ramps(&mut self, problem: &Problem, ramps: &Ramps) {
+    fn ramps(&mut self, problem: &Problem, ramps: &Ramps) -> bool {
         let Problem { a0, af, .. } = *problem;
         let Ramps { first: r1, second: r2, rest, w } = *ramps;
         self.forward(r1.x - r1.sign * a0, r1.sign, a0);
@@ -92,10 +96,10 @@ impl Draft<'_> {
             Piece::new(r2.x, -r2.sign, 0.0),
             Piece::new(r2.hold, 0.0, -r2.sign * r2.x),
             Piece::new(r2.x + r2.sign * af, r2.sign, -r2.sign * r2.x),
-        ]);
+        ])
     }
 
-    fn mixture(&mut self, problem: &Problem, mixture: &Mixture) {
+    fn mixture(&mut self, problem: &Problem, mixture: &Mixture) -> bool {
         let Problem { a0, af, .. } = *problem;
         let up = Extreme { shape: mixture.up, sign: 1.0, a0, af };
         let down = Extreme { shape: mixture.down, sign: -1.0, a0, af };
@@ -108,7 +112,7 @@ impl Draft<'_> {
         for (place, piece) in last.iter_mut().zip(&pieces[forward..len]) {
             *place = *piece;
         }
-        self.backward(&last);
+        self.backward(&last)
     }
 }
 

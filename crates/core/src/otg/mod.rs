@@ -99,23 +99,32 @@ pub fn calculate_into<const N: usize>(input: &Input<N>, trajectory: &mut Traject
             }
             Role::Early | Role::Together => {}
         }
-        axes[axis].write(&plans[axis].solution, &mut trajectory.profiles[axis]);
+        axes[axis].write(&plans[axis].solution, axis, &mut trajectory.profiles[axis])?;
     }
     if let Some(line) = &groups.line {
-        spread(input, line, trajectory);
+        spread(input, line, trajectory)?;
     }
     trajectory.check_positions(input)
 }
 
 /// Gives the axes of a line their shares of the motion along it.
-fn spread<const N: usize>(input: &Input<N>, line: &Line<N>, trajectory: &mut Trajectory<N>) {
+fn spread<const N: usize>(
+    input: &Input<N>,
+    line: &Line<N>,
+    trajectory: &mut Trajectory<N>,
+) -> Result<(), Error> {
     let scalar = trajectory.profiles[line.reference];
     let duration_min = trajectory.duration_min[line.reference];
     for axis in (0..N).filter(|&axis| trajectory.synchronized[axis] == Synchronization::Phase) {
         let AxisInput { current, target, control, .. } = AxisInput::of(input, axis);
-        trajectory.profiles[axis] = scalar.along(current, target, control, line.direction[axis]);
+        let profile = &mut trajectory.profiles[axis];
+        *profile = scalar.along(current, target, control, line.direction[axis]);
+        if !profile.is_finite() {
+            return Err(Error::OutOfRange { axis });
+        }
         trajectory.duration_min[axis] = duration_min;
     }
+    Ok(())
 }
 
 /// What an axis is in the synchronization.

@@ -52,6 +52,16 @@ impl From<Point> for Phase {
     }
 }
 
+/// Two states closer than this fraction of the motion's size are one. Rounding is some hundred times less; whatever is more is a
+/// number beyond the range of floats.
+const JOINS: f64 = 1e-9;
+
+/// Whether a difference is rounding only. Not where the size has overflowed.
+#[inline]
+fn close(difference: f64, size: f64) -> bool {
+    difference <= JOINS * size && size < f64::INFINITY
+}
+
 /// What a profile's control is: the derivative of position that may jump.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Order {
@@ -123,7 +133,12 @@ impl Profile {
 
     /// Appends pieces that lead to the state `end`, reckoned back from there.
     #[inline]
-    pub(super) fn push_backward<const K: usize>(&mut self, pieces: &[Piece; K], scale: f64, end: Point) {
+    pub(super) fn push_backward<const K: usize>(
+        &mut self,
+        pieces: &[Piece; K],
+        scale: f64,
+        end: Point,
+    ) -> Point {
         let mut phases = [Phase::default(); K];
         let Point { mut p, mut v, .. } = end;
         for (phase, piece) in phases.iter_mut().zip(pieces).rev() {
@@ -138,6 +153,27 @@ impl Profile {
                 self.push(phase);
             }
         }
+        Point { p, v, a: phases.first().map_or(end.a, |phase| phase.acceleration) }
+    }
+
+    /// Whether two states of this motion that must be one are one, but for rounding. Numbers that have overflowed are not.
+    /// `size` is that of the coordinates.
+    #[inline]
+    pub(super) fn joins(&self, one: Point, other: Point, size: f64) -> bool {
+        let (p, v) = ((one.p - other.p).abs(), (one.v - other.v).abs());
+        let speed = one.v.abs() + self.end.velocity.abs();
+        close(p, size + speed * self.duration) && close(v, speed) || self.joins_by_size(p, v, size)
+    }
+
+    /// As [`Self::joins`], with the largest velocity that the motion has.
+    #[cold]
+    fn joins_by_size(&self, p: f64, v: f64, size: f64) -> bool {
+        let mut speed = self.end.velocity.abs();
+        for phase in self.phases() {
+            let change = phase.acceleration.abs() + phase.jerk.abs() * phase.duration;
+            speed = larger(speed, phase.velocity.abs() + change * phase.duration);
+        }
+        close(p, size + speed * self.duration) && close(v, speed)
     }
 
     #[inline]
@@ -172,6 +208,12 @@ impl Profile {
             profile.end.position = base + direction * self.end.position;
         }
         profile
+    }
+
+    /// Whether no number has overflowed.
+    pub(super) fn is_finite(&self) -> bool {
+        let finite = |p: &Phase| (p.position + p.velocity + p.acceleration + p.jerk).is_finite();
+        self.duration.is_finite() && finite(&self.end) && self.phases().iter().all(finite)
     }
 
     /// All phases in order, those of the brake first.

@@ -117,7 +117,7 @@ impl SecondOrder {
         if peak > self.v_max || slope == 0.0 {
             let excess = self.displacement + self.offset() - 0.5 * w * w * slope;
             if excess > 0.0 {
-                cruise.cruise = excess / w;
+                cruise.cruise = excess / w.abs(); // for ever if that is zero, of either sign
             }
         }
         cruise

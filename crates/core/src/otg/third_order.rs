@@ -16,8 +16,10 @@ pub(super) struct ThirdOrder {
     up: Family,
     /// The possible times begin here for good; one motion only takes this time.
     start: Extremal,
-    /// Uncertainty of the displacement: rounding of its terms, and of the coordinates.
-    resolution: f64,
+    /// Uncertainty of the displacement, because its ends are large.
+    coordinates: f64,
+    /// Uncertainty of a displacement per time it takes, from the rounding of its terms.
+    rounding: f64,
 }
 
 /// An extreme motion that meets the target: when, which way, and how.
@@ -53,14 +55,18 @@ enum Side {
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl ThirdOrder {
-    /// `resolution`: how far the displacement may be off because its ends are large.
-    pub(super) fn new(problem: Problem, resolution: f64) -> Self {
+    /// `coordinates`: how far the displacement may be off because its ends are large.
+    pub(super) fn new(problem: Problem, coordinates: f64) -> Self {
         let Problem { v0, a0, vf, af, .. } = problem;
         let up = Family::new(&problem);
         let start = up.at_start();
         let terms = v0.abs() + vf.abs() + a0 * a0 + af * af + start.x * start.x;
-        let resolution = resolution + ROUNDING * terms * start.t;
-        Self { problem, up, start, resolution }
+        Self { problem, up, start, coordinates, rounding: ROUNDING * terms }
+    }
+
+    /// Displacements of about this duration that are closer than this are one.
+    fn resolution(&self, t: f64) -> f64 {
+        self.coordinates + self.rounding * t
     }
 
     /// The first arrival at or after the time `from`, at which the axis cannot arrive (or `from` is 0).
@@ -72,16 +78,17 @@ impl ThirdOrder {
         if from > self.start.t {
             let families = self.families();
             let span = families.span(from, false);
-            return match self.side(&span) {
+            return match self.side(&span, self.resolution(from)) {
                 Side::Inside => Arrival::up(&self.up, &span.up),
                 Side::Above => self.up_to(&span.up),
                 Side::Below => self.down_to(&families.down, &span.down),
             };
         }
         // At the start both families have the same motion.
-        if p > self.start.p + self.resolution {
+        let resolution = self.resolution(self.start.t);
+        if p > self.start.p + resolution {
             self.up_to(&self.start)
-        } else if p < self.start.p - self.resolution {
+        } else if p < self.start.p - resolution {
             let down = self.down();
             self.down_to(&down, &down.at_start())
         } else {
@@ -125,21 +132,23 @@ impl ThirdOrder {
                 return None;
             }
             let span = families.span(larger(from, first.t), true);
-            return match self.side(&span) {
+            let resolution = self.resolution(last.t);
+            return match self.side(&span, resolution) {
                 Side::Inside => Some(Arrival::up(&families.up, &span.up)),
                 Side::Above => {
-                    let extremal = families.up.first_reaching_on_island(p, &span.up, self.resolution)?;
+                    let extremal = families.up.first_reaching_on_island(p, &span.up, resolution)?;
                     Some(Arrival::up(&families.up, &extremal))
                 }
                 Side::Below => {
-                    let extremal = families.down.first_reaching_on_island(-p, &span.down, self.resolution)?;
+                    let extremal = families.down.first_reaching_on_island(-p, &span.down, resolution)?;
                     Some(Arrival::down(&families.down, &extremal))
                 }
             };
         }
         // An island of one motion only, which rounding has hidden from one of the families.
-        let meets =
-            |extremal: &Extremal, p: f64| from <= extremal.t && (p - extremal.p).abs() <= self.resolution;
+        let meets = |extremal: &Extremal, p: f64| {
+            from <= extremal.t && (p - extremal.p).abs() <= self.resolution(extremal.t)
+        };
         match (families.up.island(), families.down.island()) {
             (Some((only, _)), None) if meets(&only, p) => Some(Arrival::up(&families.up, &only)),
             (None, Some((only, _))) if meets(&only, -p) => Some(Arrival::down(&families.down, &only)),
@@ -148,12 +157,12 @@ impl ThirdOrder {
     }
 
     fn up_to(&self, from: &Extremal) -> Arrival {
-        let extremal = self.up.first_reaching(self.problem.displacement, from, self.resolution);
+        let extremal = self.up.first_reaching(self.problem.displacement, from, self.resolution(from.t));
         Arrival::up(&self.up, &extremal)
     }
 
     fn down_to(&self, down: &Family, from: &Extremal) -> Arrival {
-        Arrival::down(down, &down.first_reaching(-self.problem.displacement, from, self.resolution))
+        Arrival::down(down, &down.first_reaching(-self.problem.displacement, from, self.resolution(from.t)))
     }
 
     fn down(&self) -> Family {
@@ -164,11 +173,11 @@ impl ThirdOrder {
         Families { up: self.up, down: self.down() }
     }
 
-    fn side(&self, span: &Span) -> Side {
+    fn side(&self, span: &Span, resolution: f64) -> Side {
         let p = self.problem.displacement;
-        if p > span.up.p + self.resolution {
+        if p > span.up.p + resolution {
             Side::Above
-        } else if -p > span.down.p + self.resolution {
+        } else if -p > span.down.p + resolution {
             Side::Below
         } else {
             Side::Inside

@@ -184,3 +184,30 @@ fn widen(s: &mut Scalar) {
     s.v_max = s.v_max.max(s.vf + if s.af < 0.0 { reserve } else { 0.0 });
     s.v_min = s.v_min.min(s.vf - if s.af > 0.0 { reserve } else { 0.0 });
 }
+
+/// The problem seen in a mirror.
+pub fn mirrored(input: &Input<1>) -> Input<1> {
+    let turn = |s: &State<1>| State {
+        position: s.position.map(|x| -x),
+        velocity: s.velocity.map(|x| -x),
+        acceleration: s.acceleration.map(|x| -x),
+    };
+    let l = &input.limits;
+    let limits = Limits {
+        velocity_max: l.velocity_min.map(|x| -x),
+        velocity_min: l.velocity_max.map(|x| -x),
+        acceleration_max: l.acceleration_min.map(|x| -x),
+        acceleration_min: l.acceleration_max.map(|x| -x),
+        ..*l
+    };
+    Input { current: turn(&input.current), target: turn(&input.target), limits, ..*input }
+}
+
+/// The problem with time running backwards: ends change places, velocities and velocity limits their signs.
+pub fn reversed(input: &Input<1>) -> Input<1> {
+    let turn = |s: &State<1>| State { velocity: s.velocity.map(|x| -x), ..*s };
+    let l = &input.limits;
+    let limits =
+        Limits { velocity_max: l.velocity_min.map(|x| -x), velocity_min: l.velocity_max.map(|x| -x), ..*l };
+    Input { current: turn(&input.target), target: turn(&input.current), limits, ..*input }
+}
