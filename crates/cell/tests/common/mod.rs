@@ -103,11 +103,24 @@ pub enum Kind {
     BesideShoulder,
 }
 
+impl Kind {
+    /// A mix: of five moves one is an arc, one beside the wrist's and one beside the shoulder's singularity.
+    pub fn of(index: usize) -> Self {
+        [Self::Arc, Self::BesideWrist, Self::BesideShoulder, Self::Line, Self::Line][index % 5]
+    }
+}
+
 /// A random move.
 pub struct Move {
     pub kind: Kind,
     pub path: ArmPath,
     pub limits: PathLimits,
+}
+
+impl Move {
+    pub fn name(&self) -> String {
+        format!("{:?}", self.kind)
+    }
 }
 
 /// Limits of the default cell: full speed in 0.2 s (0.125 s for the wrist), jerk 50 times the acceleration a second.

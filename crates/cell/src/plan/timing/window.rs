@@ -7,12 +7,11 @@ use super::motion::{PathState, TimingPiece};
 use super::program::{Demand, Program};
 use super::{JointPath, PathLimits, TimingError, TimingLimits, crude};
 
-/// Distance of knots in seconds, on the way from the first guess to the motion.
+/// Distance of knots in seconds: on the first guess, and on the motion.
+const COARSE_STEP: f64 = 8e-3;
 const STEP: f64 = 5e-3;
-/// Rounds that re-time: the solution becomes the coordinate of the next.
-const RETIMINGS: usize = 2;
-/// Rounds that lower limits where the motion passes them between knots.
-const REPAIRS: usize = 6;
+/// Rounds that lower limits where the motion passes them between sites.
+const REPAIRS: usize = 8;
 /// A motion that has to be stretched by less than this is good enough.
 const STRETCH: f64 = 1.0005;
 /// Shares of a limit that a repair leaves: what it aims at, and the least.
@@ -22,6 +21,10 @@ const LEAST_SHARE: f64 = 0.2;
 /// Slack of the speed limit at a held end; sites next to it whose speed limit is not lowered.
 const HELD_SLACK: f64 = 0.01;
 const HELD_SITES: usize = 20;
+
+macro_rules! trace { ($($a:tt)*) => { if std::env::var("TIMING_TRACE").is_ok() { eprintln!($($a)*); } } }
+use trace;
+fn env(name: &str, default: f64) -> f64 { std::env::var(name).ok().and_then(|s| s.parse().ok()).unwrap_or(default) }
 
 /// A stretch of the path that is solved by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,6 +52,8 @@ impl Passage {
 pub(super) struct Workshop {
     solver: InteriorPoint,
     program: Program,
+    /// Derivatives with respect to w, per site and axis.
+    derivatives: Vec<[f64; 3]>,
     /// Share of each limit that is used, per site, axis and order.
     shares: Vec<[f64; 3]>,
 }
@@ -62,24 +67,28 @@ impl Workshop {
         limits: &PathLimits,
         window: &Window,
     ) -> Result<Passage, TimingError<P::Error>> {
-        let mut coordinate = crude::coordinate(path, joints, limits, window, STEP)?;
-        let axes = N + 1;
-        let mut best: Option<Passage> = None;
-        self.shares.clear();
-        self.shares.resize(coordinate.sites() * axes, [1.0; 3]);
-        // At a held end the speed is the programmed one, and no unknown can change it.
-        for (end, site) in window.ends.into_iter().zip([0, coordinate.sites() - 1]) {
-            if end == End::Cruise {
-                self.shares[site * axes + N][0] = 1.0 + HELD_SLACK;
-            }
+        let coarse = crude::coordinate(path, joints, limits, window, env("COARSE", COARSE_STEP))?;
+        self.set_site(path, window, &coarse)?;
+        self.set_demands(joints, limits, window, coarse.step);
+        if self.solver.solve(&self.program) == Outcome::Broken {
+            return Ok(Passage { pieces: Vec::new(), stretch: f64::INFINITY });
         }
-        for round in 0..RETIMINGS + REPAIRS {
-            self.set_program(path, joints, limits, window, &coordinate)?;
-            let outcome = self.solver.solve(&self.program);
+        trace!("  coarse {} its {}", coarse.knots(), self.solver.iterations);
+        let mut pieces = self.pieces(&coarse, window, limits.speed);
+        let knots = (time(&pieces) / env("STEP", STEP)).ceil() as usize + 1;
+        let coordinate = Coordinate::following(&pieces, knots, window.ends, limits.speed);
+        self.set_site(path, window, &coordinate)?;
+        let mut best = Passage { pieces: Vec::new(), stretch: f64::INFINITY };
+        for round in 0..=REPAIRS {
+            self.set_demands(joints, limits, window, coordinate.step);
+            let outcome = match round {
+                0 => self.solver.solve(&self.program),
+                _ => self.solver.solve_again(&self.program),
+            };
             if outcome == Outcome::Broken {
                 break;
             }
-            let pieces = self.pieces(&coordinate, window, limits.speed);
+            pieces = self.pieces(&coordinate, window, limits.speed);
             let mut check = Check::new(path, joints, limits);
             let mut loads = Vec::with_capacity(2 * pieces.len());
             let mut load = Load::NONE;
@@ -90,67 +99,70 @@ impl Workshop {
                 }
                 loads.extend(halves);
             }
-            let stretch = load.stretch().max(1.0);
-            if std::env::var("TIMING_TRACE").is_ok() {
-                let t: f64 = pieces.iter().map(|p| p.duration).sum();
-                eprintln!("  round {round} {outcome:?} its {} knots {} T {t:.5} stretch {stretch:.5} orders {:.4?}", self.solver.iterations, coordinate.knots(), load.orders());
+            let passage = Passage { pieces, stretch: load.stretch().max(1.0) };
+            trace!("  round {round} {outcome:?} its {} knots {} T {:.5} stretch {:.5} orders {:.4?}", self.solver.iterations, coordinate.knots(), time(&passage.pieces), passage.stretch, load.orders());
+            if best.pieces.is_empty() || passage.duration() < best.duration() {
+                best = passage;
             }
-            if std::env::var("TIMING_TRACE").as_deref() == Ok("2") && round == RETIMINGS {
-                for (i, l) in loads.iter().enumerate() {
-                    if l.stretch() > 1.003 {
-                        let piece = &pieces[i/2];
-                        eprintln!("    piece {i} dt {:.5} s {:.6} v {:.4} j {:?} load j {:.3?} {:.3?} a {:.3?}", piece.duration, piece.position, piece.velocity, [piece.jerk, piece.at(piece.duration/2.0).jerk, piece.end().jerk], l.joints[2], l.path[2], l.joints[1]);
-                    }
-                }
-            }
-            if round < RETIMINGS {
-                coordinate = Coordinate::following(&pieces, coordinate.knots(), window.ends, limits.speed);
-            } else {
-                self.tighten(&loads, window, axes);
-            }
-            let passage = Passage { pieces, stretch };
-            if best.as_ref().is_none_or(|best| passage.duration() < best.duration()) {
-                best = Some(passage);
-            }
-            if round >= RETIMINGS && stretch <= STRETCH {
+            if best.stretch <= STRETCH {
                 break;
             }
+            self.tighten(&loads, window, N + 1);
         }
-        Ok(best.unwrap_or(Passage { pieces: Vec::new(), stretch: f64::INFINITY }))
+        Ok(best)
     }
 
-    fn set_program<const N: usize, P: JointPath<N>>(
+    /// Derivatives of all axes at all sites, and whole limits.
+    fn set_site<const N: usize, P: JointPath<N>>(
         &mut self,
         path: &mut P,
-        joints: &TimingLimits<N>,
-        limits: &PathLimits,
         window: &Window,
         coordinate: &Coordinate,
     ) -> Result<(), TimingError<P::Error>> {
-        let Program { demands, axes, held } = &mut self.program;
-        *axes = N + 1;
-        *held = window.ends.map(|end| end == End::Cruise);
-        demands.clear();
+        self.derivatives.clear();
         for site in 0..coordinate.sites() {
             let w = coordinate.at(site);
             let s = w.s.clamp(window.from, window.to);
             let jet = path.jet(s).map_err(|error| TimingError::Path { position: s, error })?;
-            let shares = &self.shares[site * *axes..(site + 1) * *axes];
             for i in 0..N {
                 let (d1, d2, d3) = (jet.velocity[i], jet.acceleration[i], jet.jerk[i]);
-                let derivatives = [
+                self.derivatives.push([
                     d1 * w.d1,
                     d2 * w.d1 * w.d1 + d1 * w.d2,
                     d3 * w.d1 * w.d1 * w.d1 + 3.0 * d2 * w.d1 * w.d2 + d1 * w.d3,
-                ];
-                let limits = [joints.velocity[i], joints.acceleration[i], joints.jerk[i]];
-                demands.push(Demand::new(derivatives, scaled(limits, shares[i]), coordinate.step));
+                ]);
             }
-            let limits = [limits.speed, limits.acceleration, limits.jerk];
-            let demand = Demand::new([w.d1, w.d2, w.d3], scaled(limits, shares[N]), coordinate.step);
-            demands.push(demand);
+            self.derivatives.push([w.d1, w.d2, w.d3]);
+        }
+        self.shares.clear();
+        self.shares.resize(self.derivatives.len(), [1.0; 3]);
+        // At a held end the speed is the programmed one, and no unknown can change it.
+        for (end, site) in window.ends.into_iter().zip([0, coordinate.sites() - 1]) {
+            if end == End::Cruise {
+                self.shares[site * (N + 1) + N][0] = 1.0 + HELD_SLACK;
+            }
         }
         Ok(())
+    }
+
+    fn set_demands<const N: usize>(
+        &mut self,
+        joints: &TimingLimits<N>,
+        limits: &PathLimits,
+        window: &Window,
+        step: f64,
+    ) {
+        let Program { demands, axes, held } = &mut self.program;
+        *axes = N + 1;
+        *held = window.ends.map(|end| end == End::Cruise);
+        demands.clear();
+        for (index, (derivatives, shares)) in self.derivatives.iter().zip(&self.shares).enumerate() {
+            let limits = match index % (N + 1) {
+                i if i < N => [joints.velocity[i], joints.acceleration[i], joints.jerk[i]],
+                _ => [limits.speed, limits.acceleration, limits.jerk],
+            };
+            demands.push(Demand::new(*derivatives, scaled(limits, *shares), step));
+        }
     }
 
     /// The motion in time that the solution stands for: one piece between two knots.
