@@ -39,7 +39,13 @@ fn main() -> std::io::Result<()> {
     }
     speeds.sort_by(f64::total_cmp);
     let at = |share: f64| speeds.get((share * speeds.len() as f64) as usize).copied().unwrap_or(f64::NAN);
-    println!("motion / planning of {} optimized moves: least {:.0}, 5 % {:.0}, median {:.0}", speeds.len(), at(0.0), at(0.05), at(0.5));
+    println!(
+        "motion / planning of {} optimized moves: least {:.0}, 5 % {:.0}, median {:.0}",
+        speeds.len(),
+        at(0.0),
+        at(0.05),
+        at(0.5)
+    );
     Ok(())
 }
 
@@ -62,12 +68,12 @@ fn planned(job: &mut Move) -> (Option<Timing>, f64) {
 /// Little-endian numbers: our duration, path length, speed and acceleration limit, then place, q′ and q″ on a grid.
 fn dump(job: &mut Move, timing: &Timing, file: &Path) -> std::io::Result<()> {
     let length = job.path.length();
-    let steps = (timing.duration() / 1e-3).ceil().clamp(200.0, 4000.0) as usize;
+    let steps = (timing.duration() / 0.5e-3).ceil().clamp(200.0, 8000.0) as usize;
     let mut places: Vec<f64> =
         (0..=steps).map(|i| timing.at(timing.duration() * i as f64 / steps as f64).position).collect();
     places.extend((0..=200).map(|i| length * f64::from(i) / 200.0));
     places.sort_by(f64::total_cmp);
-    places.dedup_by(|next, before| *next - *before < 1e-6 * length);
+    places.dedup_by(|next, before| *next - *before < 1e-8 * length);
     if let Some(last) = places.last_mut() {
         *last = length;
     }

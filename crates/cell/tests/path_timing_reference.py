@@ -82,7 +82,7 @@ def main():
     print(f"{len(values)} moves, TOPP-RA failed on {failed}")
     print("ours / TOPP-RA: least %.4f, median %.4f, 95 %% %.4f, greatest %.4f" %
           (values[0], np.median(values), np.quantile(values, 0.95), values[-1]))
-    for ratio in ratios[-8:]:
+    for ratio in ratios[:4] + ratios[-8:]:
         print("  %.4f  move %s: %.4f s against %.4f s" % ratio)
 
 

@@ -1,9 +1,12 @@
 //! Random tool paths of an AR2010-class arm, beside its singularities too, as the joints see them.
 
+// Tests and the example each use a part.
 #![allow(dead_code)]
 
-use seamline::geometry::{Pose, Rotation, Vector3};
+pub(crate) mod planar;
+
 use core::f64::consts::TAU;
+use seamline::geometry::{Pose, Rotation, Vector3};
 use seamline::kinematics::{InverseError, JointJet, Kinematics, Posture, SphericalWristArm, models};
 use seamline::path::Path;
 use seamline_cell::plan::timing::{JointPath, PathLimits, TimingLimits};
@@ -14,7 +17,7 @@ const TRACE_DEPTH: u32 = 50;
 
 /// A tool path with the joints' branch followed along it.
 #[derive(Clone)]
-pub struct ArmPath {
+pub(crate) struct ArmPath {
     arm: SphericalWristArm,
     path: Path,
     tool_from_flange: Pose,
@@ -25,7 +28,7 @@ pub struct ArmPath {
 
 impl ArmPath {
     /// The path, on the branch of `q` at `s`. None where the arm cannot follow it all along.
-    pub fn try_new(path: Path, flange_from_tool: &Pose, s: f64, q: [f64; 6]) -> Option<Self> {
+    pub(crate) fn try_new(path: Path, flange_from_tool: &Pose, s: f64, q: [f64; 6]) -> Option<Self> {
         let tool_from_flange = flange_from_tool.inverse();
         let arm = models::ar2010();
         let posture = arm.posture(&q);
@@ -71,7 +74,7 @@ impl ArmPath {
         self.arm.limits().first_violation(&q).is_none().then_some(q)
     }
 
-    pub fn joints(&self, s: f64) -> Option<[f64; 6]> {
+    pub(crate) fn joints(&self, s: f64) -> Option<[f64; 6]> {
         let next = self.trace.partition_point(|&(place, _)| place <= s).clamp(1, self.trace.len() - 1);
         let ((s0, q0), (s1, q1)) = (self.trace[next - 1], self.trace[next]);
         let share = (s - s0) / (s1 - s0);
@@ -96,7 +99,7 @@ impl JointPath<6> for ArmPath {
 
 /// What a random move is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub(crate) enum Kind {
     Line,
     Arc,
     BesideWrist,
@@ -105,26 +108,26 @@ pub enum Kind {
 
 impl Kind {
     /// A mix: of five moves one is an arc, one beside the wrist's and one beside the shoulder's singularity.
-    pub fn of(index: usize) -> Self {
+    pub(crate) fn of(index: usize) -> Self {
         [Self::Arc, Self::BesideWrist, Self::BesideShoulder, Self::Line, Self::Line][index % 5]
     }
 }
 
 /// A random move.
-pub struct Move {
-    pub kind: Kind,
-    pub path: ArmPath,
-    pub limits: PathLimits,
+pub(crate) struct Move {
+    pub(crate) kind: Kind,
+    pub(crate) path: ArmPath,
+    pub(crate) limits: PathLimits,
 }
 
 impl Move {
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         format!("{:?}", self.kind)
     }
 }
 
 /// Limits of the default cell: full speed in 0.2 s (0.125 s for the wrist), jerk 50 times the acceleration a second.
-pub fn joint_limits() -> TimingLimits<6> {
+pub(crate) fn joint_limits() -> TimingLimits<6> {
     let radians = |values: [f64; 6]| values.map(f64::to_radians);
     let acceleration = radians([1050.0, 1050.0, 1100.0, 3480.0, 3480.0, 5600.0]);
     TimingLimits {
@@ -135,16 +138,16 @@ pub fn joint_limits() -> TimingLimits<6> {
 }
 
 /// A torch: 459 mm ahead of the flange, bent by 22°.
-pub fn torch() -> Pose {
+pub(crate) fn torch() -> Pose {
     let bend = Rotation::from_axis_angle(&Vector3::y_axis(), -22f64.to_radians());
     Pose::from_parts([-0.04383, 0.0, 0.45848].into(), bend)
 }
 
 /// A repeatable source of randomness (splitmix64).
-pub struct Random(pub u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    pub fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -152,11 +155,11 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    pub fn within(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
-    pub fn log_within(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn log_within(&mut self, low: f64, high: f64) -> f64 {
         self.within(low.ln(), high.ln()).exp()
     }
 
@@ -176,7 +179,7 @@ impl Random {
 }
 
 /// A random move of the kind, tried until the arm can follow it.
-pub fn random_move(random: &mut Random, kind: Kind) -> Move {
+pub(crate) fn random_move(random: &mut Random, kind: Kind) -> Move {
     for _ in 0..100_000 {
         if let Some(path) = candidate(random, kind) {
             let speed = random.log_within(0.005, 1.0);
@@ -204,7 +207,7 @@ fn candidate(random: &mut Random, kind: Kind) -> Option<ArmPath> {
         Kind::BesideShoulder => middle = above_axis_1(random, &arm)?,
     }
     let pose = arm.forward(&middle) * tool;
-    let length = random.log_within(0.02, 0.8);
+    let length = random.log_within(0.05, 0.8);
     let turn = Rotation::from_scaled_axis(random.direction() * random.within(0.0, 0.5));
     let direction = random.direction();
     let share = random.within(0.3, 0.7);

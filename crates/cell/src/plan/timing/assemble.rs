@@ -81,9 +81,8 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
     fn windows(&self, curve: &SCurve, busy: &Stretches) -> Vec<Window> {
         let PathLimits { speed, acceleration, jerk } = *self.limits;
         let braking = |v: f64, a: f64, j: f64| v / a + a / j;
-        let joints = (0..N).map(|i| {
-            braking(self.joints.velocity[i], self.joints.acceleration[i], self.joints.jerk[i])
-        });
+        let joints = (0..N)
+            .map(|i| braking(self.joints.velocity[i], self.joints.acceleration[i], self.joints.jerk[i]));
         let reach = REACH * curve.speed * joints.fold(braking(speed, acceleration, jerk), f64::max);
         let (first, last) = (curve.ramp() + reach, curve.length - curve.ramp() - reach);
         let mut windows: Vec<Window> = Vec::new();

@@ -88,7 +88,7 @@ impl Coordinate {
         let first: [f64; 4] = core::array::from_fn(|i| c[i + 1] - c[i]);
         let second: [f64; 3] = core::array::from_fn(|i| first[i + 1] - first[i]);
         let third: [f64; 2] = core::array::from_fn(|i| second[i + 1] - second[i]);
-        if site % 2 == 0 {
+        if site.is_multiple_of(2) {
             return CoordinateJet {
                 s: c[2] + (first[3] - first[0] + 27.0 * (first[2] - first[1])) / 120.0,
                 d1: (first[0] + 11.0 * (first[1] + first[2]) + first[3]) / (24.0 * h),

@@ -79,7 +79,8 @@ impl<const N: usize, P: JointPath<N>> Survey<'_, N, P> {
         for i in 0..N {
             let bending = BENDING_SHARE * self.joints.acceleration[i] / jet.acceleration[i].abs();
             let twisting = BENDING_SHARE * self.joints.jerk[i] / jet.jerk[i].abs();
-            let most = (self.joints.velocity[i] / jet.velocity[i].abs()).min(bending.sqrt()).min(twisting.cbrt());
+            let most =
+                (self.joints.velocity[i] / jet.velocity[i].abs()).min(bending.sqrt()).min(twisting.cbrt());
             speed = speed.min(most);
             acceleration = acceleration.min(self.joints.acceleration[i] / jet.velocity[i].abs());
         }

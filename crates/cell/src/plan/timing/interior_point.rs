@@ -10,9 +10,8 @@ use super::program::{Point, Program, Rows};
 
 /// Bound on iterations.
 const ITERATIONS: usize = 50;
-/// Done when the duality gap, as a share of the duration, the dual residual likewise, and the rows' residual fall below.
-const GAP: f64 = 5e-4;
-const DUAL_RESIDUAL: f64 = 2e-3;
+/// The dual residual may be so many times the duality gap, which is what the accuracy speaks of; the rows' residual.
+const DUAL_RESIDUAL: f64 = 4.0;
 const RESIDUAL: f64 = 1e-5;
 /// Start: share of the highest constant β, the least slack, and the product of slack and dual.
 const START_SHARE: f64 = 0.9;
@@ -71,13 +70,13 @@ struct Progress {
 
 impl InteriorPoint {
     /// Solves a new problem; the controls of β are in [`InteriorPoint::controls`] afterwards.
-    pub(super) fn solve(&mut self, program: &Program) -> Outcome {
+    pub(super) fn solve(&mut self, program: &Program, accuracy: f64) -> Outcome {
         self.start(program);
-        self.iterate(program)
+        self.iterate(program, accuracy)
     }
 
     /// Solves the last problem again after small changes to its demands.
-    pub(super) fn solve_again(&mut self, program: &Program) -> Outcome {
+    pub(super) fn solve_again(&mut self, program: &Program, accuracy: f64) -> Outcome {
         for (index, demand) in program.demands.iter().enumerate() {
             let rows = demand.rows(&self.points[index / program.axes]);
             for (row, g) in rows.into_iter().enumerate() {
@@ -86,7 +85,7 @@ impl InteriorPoint {
                 self.dual[index][row] = self.dual[index][row].max(AGAIN_PRODUCT / slack);
             }
         }
-        self.iterate(program)
+        self.iterate(program, accuracy)
     }
 
     /// Controls of β: knot k lies under number k + 1.
@@ -94,12 +93,12 @@ impl InteriorPoint {
         &self.controls
     }
 
-    fn iterate(&mut self, program: &Program) -> Outcome {
+    fn iterate(&mut self, program: &Program, accuracy: f64) -> Outcome {
         for iteration in 0..ITERATIONS {
             self.iterations = iteration;
             let progress = self.assemble(program);
-            let done = progress.gap <= GAP * progress.duration
-                && progress.dual_residual <= DUAL_RESIDUAL * progress.duration
+            let done = progress.gap <= accuracy * progress.duration
+                && progress.dual_residual <= DUAL_RESIDUAL * accuracy * progress.duration
                 && progress.residual <= RESIDUAL;
             if done {
                 return Outcome::Converged;
@@ -314,7 +313,13 @@ fn frozen(program: &Program, index: usize, size: usize) -> bool {
 /// Gradient and diagonal curvature of the duration (in knots) at one site, in terms of β, h β′, h² β″: Simpson's rule.
 fn objective(program: &Program, site: usize, point: &Point, duration: &mut f64) -> ([f64; 3], [f64; 3]) {
     let last = program.sites() - 1;
-    let weight = if site == 0 || site == last { 1.0 } else if site % 2 == 1 { 4.0 } else { 2.0 } / 6.0;
+    let weight = if site == 0 || site == last {
+        1.0
+    } else if site % 2 == 1 {
+        4.0
+    } else {
+        2.0
+    } / 6.0;
     let [beta, slope, bend] = point.x;
     *duration += weight * point.root;
     let gradient = -0.5 * weight * point.root / beta;

@@ -66,10 +66,7 @@ struct Cause {
 
 impl Cause {
     fn at<const N: usize>(jet: &JointJet<N>, joints: &TimingLimits<N>) -> Self {
-        let mut cause = Self {
-            speed: (f64::INFINITY, 0, Order::Velocity),
-            acceleration: (f64::INFINITY, 0),
-        };
+        let mut cause = Self { speed: (f64::INFINITY, 0, Order::Velocity), acceleration: (f64::INFINITY, 0) };
         for i in 0..N {
             let velocity = joints.velocity[i] / jet.velocity[i].abs();
             let acceleration = (joints.acceleration[i] / jet.acceleration[i].abs()).sqrt();

@@ -10,6 +10,9 @@ use super::{JointPath, PathLimits, TimingError, TimingLimits, crude};
 /// Distance of knots in seconds: on the first guess, and on the motion.
 const COARSE_STEP: f64 = 8e-3;
 const STEP: f64 = 5e-3;
+/// How near the optimum the solver goes, as a share of the duration.
+const COARSE_ACCURACY: f64 = 5e-2;
+const ACCURACY: f64 = 5e-4;
 /// Rounds that lower limits where the motion passes them between sites.
 const REPAIRS: usize = 8;
 /// A motion that has to be stretched by less than this is good enough.
@@ -21,10 +24,6 @@ const LEAST_SHARE: f64 = 0.2;
 /// Slack of the speed limit at a held end; sites next to it whose speed limit is not lowered.
 const HELD_SLACK: f64 = 0.01;
 const HELD_SITES: usize = 20;
-
-macro_rules! trace { ($($a:tt)*) => { if std::env::var("TIMING_TRACE").is_ok() { eprintln!($($a)*); } } }
-use trace;
-fn env(name: &str, default: f64) -> f64 { std::env::var(name).ok().and_then(|s| s.parse().ok()).unwrap_or(default) }
 
 /// A stretch of the path that is solved by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,23 +66,22 @@ impl Workshop {
         limits: &PathLimits,
         window: &Window,
     ) -> Result<Passage, TimingError<P::Error>> {
-        let coarse = crude::coordinate(path, joints, limits, window, env("COARSE", COARSE_STEP))?;
+        let coarse = crude::coordinate(path, joints, limits, window, COARSE_STEP)?;
         self.set_site(path, window, &coarse)?;
         self.set_demands(joints, limits, window, coarse.step);
-        if self.solver.solve(&self.program) == Outcome::Broken {
+        if self.solver.solve(&self.program, COARSE_ACCURACY) == Outcome::Broken {
             return Ok(Passage { pieces: Vec::new(), stretch: f64::INFINITY });
         }
-        trace!("  coarse {} its {}", coarse.knots(), self.solver.iterations);
         let mut pieces = self.pieces(&coarse, window, limits.speed);
-        let knots = (time(&pieces) / env("STEP", STEP)).ceil() as usize + 1;
+        let knots = (time(&pieces) / STEP).ceil() as usize + 1;
         let coordinate = Coordinate::following(&pieces, knots, window.ends, limits.speed);
         self.set_site(path, window, &coordinate)?;
         let mut best = Passage { pieces: Vec::new(), stretch: f64::INFINITY };
         for round in 0..=REPAIRS {
             self.set_demands(joints, limits, window, coordinate.step);
             let outcome = match round {
-                0 => self.solver.solve(&self.program),
-                _ => self.solver.solve_again(&self.program),
+                0 => self.solver.solve(&self.program, ACCURACY),
+                _ => self.solver.solve_again(&self.program, ACCURACY),
             };
             if outcome == Outcome::Broken {
                 break;
@@ -100,7 +98,6 @@ impl Workshop {
                 loads.extend(halves);
             }
             let passage = Passage { pieces, stretch: load.stretch().max(1.0) };
-            trace!("  round {round} {outcome:?} its {} knots {} T {:.5} stretch {:.5} orders {:.4?}", self.solver.iterations, coordinate.knots(), time(&passage.pieces), passage.stretch, load.orders());
             if best.pieces.is_empty() || passage.duration() < best.duration() {
                 best = passage;
             }
@@ -135,7 +132,7 @@ impl Workshop {
             self.derivatives.push([w.d1, w.d2, w.d3]);
         }
         self.shares.clear();
-        self.shares.resize(self.derivatives.len(), [1.0; 3]);
+        self.shares.resize(self.derivatives.len(), [1.0, 1.0, 1.0]);
         // At a held end the speed is the programmed one, and no unknown can change it.
         for (end, site) in window.ends.into_iter().zip([0, coordinate.sites() - 1]) {
             if end == End::Cruise {
