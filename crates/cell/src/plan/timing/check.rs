@@ -1,7 +1,7 @@
 //! The judge: how much of each limit a motion along a path takes, between the samples too.
 //!
 //! A piece is sampled with exact derivatives in time and bisected until
-//! - both ends of an interval predict each other (two-point Hermite formulae, of position and of acceleration), so that
+//! - the samples of an interval predict each other (Hermite's formula for the position, Simpson's for the acceleration), so that
 //!   nothing hides in between: a needle-sharp turn of a wrist shows as a displacement that nothing at the ends foretells;
 //! - the middle lies near the chord wherever the limit is near, so that the parabola through the three samples tells
 //!   what happens between them.
@@ -16,11 +16,15 @@ const FIRST_INTERVALS: f64 = 64.0;
 const DEPTH: usize = 40;
 /// Bound on bisections that only sharpen a peak.
 const SHARPENING_DEPTH: usize = 8;
-/// From this share of a limit on, the peak between samples is made sharp; the second difference allowed then.
-const NEAR: f64 = 0.9;
-const BEND: f64 = 0.02;
-/// A jerk, as a share of its limit, that may stay unseen in an interval of at most `SHARP` seconds.
-const UNSEEN: f64 = 0.02;
+/// From this share of a limit on, samples are made to tell it sharply: by the second difference that they may have, and
+/// by the mean jerk between two of them that they may leave unexplained, as shares.
+const NEAR: f64 = 0.95;
+const BEND: f64 = 0.005;
+const UNEXPLAINED: f64 = 0.001;
+/// What may stay unseen in an interval of at most `SHARP` seconds: a turn, as a share of what the jerk limit could make
+/// of it, and a mean jerk, as a share of the limit.
+const UNSEEN_TURN: f64 = 0.02;
+const UNSEEN_JERK: f64 = 0.002;
 const SHARP: f64 = 5e-3;
 /// Rounding of joint positions in radians, and of accelerations as a share of the limit.
 const POSITION_NOISE: f64 = 1e-9;
@@ -92,12 +96,14 @@ pub(super) struct Check<'a, const N: usize, P> {
     length: f64,
     joints: &'a TimingLimits<N>,
     limits: &'a PathLimits,
+    /// Right ends of intervals still to be judged, the nearest last, and how often each was split.
+    waiting: Vec<(Sample<N>, usize)>,
 }
 
 impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
     pub(super) fn new(path: &'a mut P, joints: &'a TimingLimits<N>, limits: &'a PathLimits) -> Self {
         let length = path.length();
-        Self { path, length, joints, limits }
+        Self { path, length, joints, limits, waiting: Vec::with_capacity(DEPTH + 1) }
     }
 
     /// The load of a whole motion.
@@ -157,8 +163,7 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
         Ok(Sample { time, place, position: jet.position, shares, path })
     }
 
-    /// Bisects one interval until every part can be vouched for. The right ends of what is still to be done lie on
-    /// a stack, the nearest on top.
+    /// Bisects one interval until every part can be vouched for.
     fn interval(
         &mut self,
         piece: &TimingPiece,
@@ -168,49 +173,72 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
     ) -> Result<Load<N>, TimingError<P::Error>> {
         let mut load = Load::NONE;
         let mut left = *start;
-        let mut ends = [(*end, 0); DEPTH + 1];
-        let mut waiting = 1;
+        self.waiting.clear();
+        self.waiting.push((*end, 0));
         // Each turn either finishes an interval or splits one, and none is split deeper than DEPTH.
-        while waiting > 0 {
-            let (right, depth) = ends[waiting - 1];
+        while let Some((right, depth)) = self.waiting.pop() {
             let middle = self.sample(piece, (left.time + right.time) / 2.0)?;
-            let (part, bend) = peak(&left, &middle, &right);
-            let foretold = self.foretold(&left, &right, &part);
+            let part = highest(&left, &middle, &right);
+            let foretold = self.foretold(&left, &middle, &right, &part);
             if !foretold && depth == DEPTH {
                 self.refuse_jump(&left, &right)?;
             }
-            if depth < DEPTH && (!foretold || (bend && depth < SHARPENING_DEPTH)) {
-                ends[waiting - 1].1 = depth + 1;
-                ends[waiting] = (middle, depth + 1);
-                waiting += 1;
+            let sharp = depth >= SHARPENING_DEPTH || self.sharp(&left, &middle, &right, &part);
+            if depth < DEPTH && !(foretold && sharp) {
+                self.waiting.push((right, depth + 1));
+                self.waiting.push((middle, depth + 1));
                 continue;
             }
             each(left.place, right.place, &part);
             load.raise(&part);
             left = right;
-            waiting -= 1;
         }
         Ok(load)
     }
 
-    /// Whether the two ends of an interval predict each other.
-    fn foretold(&self, start: &Sample<N>, end: &Sample<N>, load: &Load<N>) -> bool {
+    /// Whether the samples tell what happens between them to a small part of the limit, wherever that is near.
+    fn sharp(&self, start: &Sample<N>, middle: &Sample<N>, end: &Sample<N>, load: &Load<N>) -> bool {
+        let half = (end.time - start.time) / 2.0;
+        let bend = |order: usize, i: usize| {
+            let at = |sample: &Sample<N>| sample.shares[order][i];
+            (at(start) - 2.0 * at(middle) + at(end)).abs()
+        };
+        // Mean jerk of half an interval, as its limit's share: by the change of acceleration, and by the samples.
+        let unexplained = |a: &Sample<N>, b: &Sample<N>, i: usize| {
+            let change = self.joints.acceleration[i] * (b.shares[1][i] - a.shares[1][i]);
+            (change / (self.joints.jerk[i] * half) - (a.shares[2][i] + b.shares[2][i]) / 2.0).abs()
+        };
+        (0..N).all(|i| {
+            let bends = (0..3).any(|order| {
+                let share = load.joints[order][i];
+                share > NEAR && bend(order, i) > BEND * share
+            });
+            let share = load.joints[2][i];
+            let hides = share > NEAR
+                && unexplained(start, middle, i).max(unexplained(middle, end, i)) > UNEXPLAINED * share;
+            !bends && !hides
+        })
+    }
+
+    /// Whether the samples of an interval predict each other.
+    fn foretold(&self, start: &Sample<N>, middle: &Sample<N>, end: &Sample<N>, load: &Load<N>) -> bool {
         let t = end.time - start.time;
         let sharp = t.min(SHARP);
         (0..N).all(|i| {
             let change = |order: usize| end.shares[order][i] - start.shares[order][i];
             let sum = |order: usize| end.shares[order][i] + start.shares[order][i];
             let limit = [self.joints.velocity[i], self.joints.acceleration[i], self.joints.jerk[i]];
-            let unseen = UNSEEN * limit[2] * load.joints[2][i].max(1.0);
+            let jerk = limit[2] * load.joints[2][i].max(1.0);
             // q₁ − q₀ = h/2 (q̇₀+q̇₁) − h²/10 (q̈₁−q̈₀) + h³/120 (q⃛₀+q⃛₁) + O(h⁷)
             let position = end.position[i] - start.position[i] - t / 2.0 * limit[0] * sum(0)
                 + t * t / 10.0 * limit[1] * change(1)
                 - t * t * t / 120.0 * limit[2] * sum(2);
-            // q̈₁ − q̈₀ = h/2 (q⃛₀+q⃛₁) + O(h³)
-            let acceleration = limit[1] * change(1) - t / 2.0 * limit[2] * sum(2);
+            // q̈₁ − q̈₀ = h/6 (q⃛₀ + 4 q⃛ₘ + q⃛₁) + O(h⁵)
+            let mean = (sum(2) + 4.0 * middle.shares[2][i]) / 6.0;
+            let acceleration = limit[1] * change(1) - t * limit[2] * mean;
             let noise = ACCELERATION_NOISE * limit[1] * load.joints[1][i].max(1.0);
-            position.abs() <= unseen * sharp * sharp * sharp + POSITION_NOISE
-                && acceleration.abs() <= 5.0 * unseen * sharp + noise
+            position.abs() <= UNSEEN_TURN * jerk * sharp * sharp * sharp + POSITION_NOISE
+                && acceleration.abs() <= UNSEEN_JERK * jerk * sharp + noise
         })
     }
 
@@ -229,23 +257,19 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
     }
 }
 
-/// The highest shares on three evenly spaced samples and on the parabola through them, and whether that deserves
-/// sharpening.
-fn peak<const N: usize>(start: &Sample<N>, middle: &Sample<N>, end: &Sample<N>) -> (Load<N>, bool) {
-    let mut sharpen = false;
-    let mut highest = |a: f64, m: f64, b: f64| {
+/// The highest shares on three evenly spaced samples and on the parabola through them.
+fn highest<const N: usize>(start: &Sample<N>, middle: &Sample<N>, end: &Sample<N>) -> Load<N> {
+    let highest = |a: f64, m: f64, b: f64| {
         let (slope, bend) = ((b - a) / 2.0, a - 2.0 * m + b);
-        let sampled = a.abs().max(m.abs()).max(b.abs());
         let vertex = if slope.abs() < bend.abs() { (m - slope * slope / (2.0 * bend)).abs() } else { 0.0 };
-        let highest = sampled.max(vertex);
-        sharpen |= highest > NEAR && bend.abs() > BEND * highest;
-        highest
+        a.abs().max(m.abs()).max(b.abs()).max(vertex)
     };
-    let joints = core::array::from_fn(|order| {
-        core::array::from_fn(|i| {
-            highest(start.shares[order][i], middle.shares[order][i], end.shares[order][i])
-        })
-    });
-    let path = core::array::from_fn(|order| highest(start.path[order], middle.path[order], end.path[order]));
-    (Load { joints, path }, sharpen)
+    Load {
+        joints: core::array::from_fn(|order| {
+            core::array::from_fn(|i| {
+                highest(start.shares[order][i], middle.shares[order][i], end.shares[order][i])
+            })
+        }),
+        path: core::array::from_fn(|order| highest(start.path[order], middle.path[order], end.path[order])),
+    }
 }
