@@ -2,6 +2,8 @@
 //!
 //! `path_timing [COUNT [FOLDER]]`: with a folder, each move is also written there for `tests/path_timing_reference.py`.
 
+#![allow(clippy::print_stdout, reason = "printing is what it is for")]
+
 #[path = "../tests/common/mod.rs"]
 mod common;
 
@@ -23,7 +25,7 @@ fn main() -> std::io::Result<()> {
     for index in 0..count {
         let mut job = random_move(&mut random, Kind::of(index));
         let (timing, took) = planned(&mut job);
-        print!("{index:3} {:<14} {:.3} m at {:.3} m/s: ", job.name(), job.path.length(), job.limits.speed);
+        print!("{index:3} {:?} {:.3} m at {:.3} m/s: ", job.kind, job.path.length(), job.limits.speed);
         let Some(timing) = timing else { continue };
         let (kind, duration, pieces) = (timing.kind(), timing.duration(), timing.pieces().len());
         println!("{kind:?} {duration:.4} s, {pieces} pieces, planned {:.0} times faster", duration / took);
@@ -65,7 +67,8 @@ fn planned(job: &mut Move) -> (Option<Timing>, f64) {
     (found, least)
 }
 
-/// Little-endian numbers: our duration, path length, speed and acceleration limit, then place, q′ and q″ on a grid.
+/// Little-endian numbers: our duration, 1 if it was optimized, path length, speed and acceleration limit, then place, q′
+/// and q″ on a grid.
 fn dump(job: &mut Move, timing: &Timing, file: &Path) -> std::io::Result<()> {
     let length = job.path.length();
     let steps = (timing.duration() / 0.5e-3).ceil().clamp(200.0, 8000.0) as usize;
@@ -79,7 +82,8 @@ fn dump(job: &mut Move, timing: &Timing, file: &Path) -> std::io::Result<()> {
     }
     let mut out = std::io::BufWriter::new(std::fs::File::create(file)?);
     let mut put = |value: f64| out.write_all(&value.to_le_bytes());
-    for value in [timing.duration(), length, job.limits.speed, job.limits.acceleration] {
+    let optimized = f64::from(u8::from(timing.kind() == TimingKind::Optimized));
+    for value in [timing.duration(), optimized, length, job.limits.speed, job.limits.acceleration] {
         put(value)?;
     }
     for place in places {

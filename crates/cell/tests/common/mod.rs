@@ -1,7 +1,7 @@
 //! Random tool paths of an AR2010-class arm, beside its singularities too, as the joints see them.
 
-// Tests and the example each use a part.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "tests and the example each use a part")]
+#![allow(clippy::panic, reason = "a generator without a result is a broken test")]
 
 pub(crate) mod planar;
 
@@ -104,12 +104,28 @@ pub(crate) enum Kind {
     Arc,
     BesideWrist,
     BesideShoulder,
+    /// A thousand times closer.
+    NeedleWrist,
+    NeedleShoulder,
 }
 
 impl Kind {
     /// A mix: of five moves one is an arc, one beside the wrist's and one beside the shoulder's singularity.
     pub(crate) fn of(index: usize) -> Self {
         [Self::Arc, Self::BesideWrist, Self::BesideShoulder, Self::Line, Self::Line][index % 5]
+    }
+
+    pub(crate) fn needle(index: usize) -> Self {
+        [Self::NeedleWrist, Self::NeedleShoulder][index % 2]
+    }
+
+    /// How near the singularity is passed, in radians or metres.
+    fn distance(self, random: &mut Random) -> f64 {
+        match self {
+            Self::BesideWrist => random.log_within(1e-6, 2e-2),
+            Self::BesideShoulder => random.log_within(1e-6, 1e-2),
+            _ => random.log_within(1e-8, 1e-6),
+        }
     }
 }
 
@@ -118,12 +134,6 @@ pub(crate) struct Move {
     pub(crate) kind: Kind,
     pub(crate) path: ArmPath,
     pub(crate) limits: PathLimits,
-}
-
-impl Move {
-    pub(crate) fn name(&self) -> String {
-        format!("{:?}", self.kind)
-    }
 }
 
 /// Limits of the default cell: full speed in 0.2 s (0.125 s for the wrist), jerk 50 times the acceleration a second.
@@ -200,11 +210,14 @@ fn candidate(random: &mut Random, kind: Kind) -> Option<ArmPath> {
     let mut middle = random.joints(&arm);
     match kind {
         Kind::Line | Kind::Arc => {}
-        Kind::BesideWrist => {
+        Kind::BesideWrist | Kind::NeedleWrist => {
             let side = if random.unit() < 0.5 { -1.0 } else { 1.0 };
-            middle[4] = side * random.log_within(1e-6, 2e-2);
+            middle[4] = side * kind.distance(random);
         }
-        Kind::BesideShoulder => middle = above_axis_1(random, &arm)?,
+        Kind::BesideShoulder | Kind::NeedleShoulder => {
+            let distance = kind.distance(random);
+            middle = above_axis_1(random, distance, &arm)?;
+        }
     }
     let pose = arm.forward(&middle) * tool;
     let length = random.log_within(0.05, 0.8);
@@ -228,9 +241,9 @@ fn candidate(random: &mut Random, kind: Kind) -> Option<ArmPath> {
     ArmPath::try_new(path, &tool, 0.0, first)
 }
 
-/// Joints whose wrist centre lies 1 µm to 10 mm from axis 1.
-fn above_axis_1(random: &mut Random, arm: &SphericalWristArm) -> Option<[f64; 6]> {
-    let (radius, angle) = (random.log_within(1e-6, 1e-2), random.within(-3.0, 3.0));
+/// Joints whose wrist centre lies at this distance from axis 1.
+fn above_axis_1(random: &mut Random, radius: f64, arm: &SphericalWristArm) -> Option<[f64; 6]> {
+    let angle = random.within(-3.0, 3.0);
     let position = Vector3::new(radius * angle.cos(), radius * angle.sin(), random.within(0.6, 1.7));
     let rotation = Rotation::from_scaled_axis(random.direction() * random.within(0.0, 3.0));
     let wrist = Pose::from_parts(position.into(), rotation);

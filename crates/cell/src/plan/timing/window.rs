@@ -8,7 +8,7 @@ use super::program::{Demand, Program};
 use super::{JointPath, PathLimits, TimingError, TimingLimits, crude};
 
 /// Distance of knots in seconds: on the first guess, and on the motion.
-const COARSE_STEP: f64 = 8e-3;
+const COARSE_STEP: f64 = 16e-3;
 const STEP: f64 = 5e-3;
 /// How near the optimum the solver goes, as a share of the duration.
 const COARSE_ACCURACY: f64 = 5e-2;
@@ -40,9 +40,12 @@ pub(super) struct Passage {
 }
 
 impl Passage {
+    /// No motion was found.
+    pub(super) const NONE: Self = Self { pieces: Vec::new(), stretch: f64::INFINITY };
+
     /// Duration with the stretching.
     pub(super) fn duration(&self) -> f64 {
-        time(&self.pieces) * self.stretch
+        if self.pieces.is_empty() { f64::INFINITY } else { time(&self.pieces) * self.stretch }
     }
 }
 
@@ -67,38 +70,31 @@ impl Workshop {
         window: &Window,
     ) -> Result<Passage, TimingError<P::Error>> {
         let coarse = crude::coordinate(path, joints, limits, window, COARSE_STEP)?;
-        self.set_site(path, window, &coarse)?;
+        self.set_sites(path, window, &coarse)?;
         self.set_demands(joints, limits, window, coarse.step);
-        if self.solver.solve(&self.program, COARSE_ACCURACY) == Outcome::Broken {
-            return Ok(Passage { pieces: Vec::new(), stretch: f64::INFINITY });
-        }
-        let mut pieces = self.pieces(&coarse, window, limits.speed);
-        let knots = (time(&pieces) / STEP).ceil() as usize + 1;
+        let outcome = self.solver.solve(&self.program, COARSE_ACCURACY);
+        let Some(pieces) = self.pieces(outcome, &coarse, window, limits.speed) else {
+            return Ok(Passage::NONE);
+        };
+        let knots = crude::knots(time(&pieces), STEP);
         let coordinate = Coordinate::following(&pieces, knots, window.ends, limits.speed);
-        self.set_site(path, window, &coordinate)?;
-        let mut best = Passage { pieces: Vec::new(), stretch: f64::INFINITY };
+        self.set_sites(path, window, &coordinate)?;
+        let mut best = Passage::NONE;
         for round in 0..=REPAIRS {
             self.set_demands(joints, limits, window, coordinate.step);
             let outcome = match round {
                 0 => self.solver.solve(&self.program, ACCURACY),
                 _ => self.solver.solve_again(&self.program, ACCURACY),
             };
-            if outcome == Outcome::Broken {
-                break;
-            }
-            pieces = self.pieces(&coordinate, window, limits.speed);
+            let Some(pieces) = self.pieces(outcome, &coordinate, window, limits.speed) else { break };
             let mut check = Check::new(path, joints, limits);
             let mut loads = Vec::with_capacity(2 * pieces.len());
-            let mut load = Load::NONE;
             for piece in &pieces {
-                let halves = check.halves(piece)?;
-                for half in halves {
-                    load.raise(&half);
-                }
-                loads.extend(halves);
+                loads.extend(check.halves(piece)?);
             }
+            let load = loads.iter().fold(Load::NONE, |most, load| most.raised(load));
             let passage = Passage { pieces, stretch: load.stretch().max(1.0) };
-            if best.pieces.is_empty() || passage.duration() < best.duration() {
+            if passage.duration() < best.duration() {
                 best = passage;
             }
             if best.stretch <= STRETCH {
@@ -110,7 +106,7 @@ impl Workshop {
     }
 
     /// Derivatives of all axes at all sites, and whole limits.
-    fn set_site<const N: usize, P: JointPath<N>>(
+    fn set_sites<const N: usize, P: JointPath<N>>(
         &mut self,
         path: &mut P,
         window: &Window,
@@ -162,8 +158,17 @@ impl Workshop {
         }
     }
 
-    /// The motion in time that the solution stands for: one piece between two knots.
-    fn pieces(&self, coordinate: &Coordinate, window: &Window, speed: f64) -> Vec<TimingPiece> {
+    /// The motion in time that the solution stands for: one piece between two knots. None where it makes no sense.
+    fn pieces(
+        &self,
+        outcome: Outcome,
+        coordinate: &Coordinate,
+        window: &Window,
+        speed: f64,
+    ) -> Option<Vec<TimingPiece>> {
+        if outcome == Outcome::Broken {
+            return None;
+        }
         let controls = self.solver.controls();
         let step = coordinate.step;
         let last = coordinate.knots() - 1;
@@ -192,7 +197,7 @@ impl Workshop {
                 let end = state(knot + 1);
                 let piece = TimingPiece::joining(&start, &end, step * duration(&controls[knot..knot + 4]));
                 start = end;
-                piece
+                (piece.duration > 0.0 && piece.duration.is_finite()).then_some(piece)
             })
             .collect()
     }
