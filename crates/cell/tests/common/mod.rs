@@ -1,6 +1,9 @@
 //! Random tool paths of an AR2010-class arm, beside its singularities too, as the joints see them.
 
-#![allow(dead_code)]
+#![allow(dead_code, reason = "tests and the example each use a part")]
+#![allow(clippy::panic, reason = "a generator without a result is a broken test")]
+
+pub(crate) mod planar;
 
 use core::f64::consts::TAU;
 use seamline::geometry::{Pose, Rotation, Vector3};
@@ -14,7 +17,7 @@ const TRACE_DEPTH: u32 = 50;
 
 /// A tool path with the joints' branch followed along it.
 #[derive(Clone)]
-pub struct ArmPath {
+pub(crate) struct ArmPath {
     arm: SphericalWristArm,
     path: Path,
     tool_from_flange: Pose,
@@ -25,7 +28,7 @@ pub struct ArmPath {
 
 impl ArmPath {
     /// The path, on the branch of `q` at `s`. None where the arm cannot follow it all along.
-    pub fn try_new(path: Path, flange_from_tool: &Pose, s: f64, q: [f64; 6]) -> Option<Self> {
+    pub(crate) fn try_new(path: Path, flange_from_tool: &Pose, s: f64, q: [f64; 6]) -> Option<Self> {
         let tool_from_flange = flange_from_tool.inverse();
         let arm = models::ar2010();
         let posture = arm.posture(&q);
@@ -71,7 +74,7 @@ impl ArmPath {
         self.arm.limits().first_violation(&q).is_none().then_some(q)
     }
 
-    pub fn joints(&self, s: f64) -> Option<[f64; 6]> {
+    pub(crate) fn joints(&self, s: f64) -> Option<[f64; 6]> {
         let next = self.trace.partition_point(|&(place, _)| place <= s).clamp(1, self.trace.len() - 1);
         let ((s0, q0), (s1, q1)) = (self.trace[next - 1], self.trace[next]);
         let share = (s - s0) / (s1 - s0);
@@ -96,22 +99,45 @@ impl JointPath<6> for ArmPath {
 
 /// What a random move is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub(crate) enum Kind {
     Line,
     Arc,
     BesideWrist,
     BesideShoulder,
+    /// A thousand times closer.
+    NeedleWrist,
+    NeedleShoulder,
+}
+
+impl Kind {
+    /// A mix: of five moves one is an arc, one beside the wrist's and one beside the shoulder's singularity.
+    pub(crate) fn of(index: usize) -> Self {
+        [Self::Arc, Self::BesideWrist, Self::BesideShoulder, Self::Line, Self::Line][index % 5]
+    }
+
+    pub(crate) fn needle(index: usize) -> Self {
+        [Self::NeedleWrist, Self::NeedleShoulder][index % 2]
+    }
+
+    /// How near the singularity is passed, in radians or metres.
+    fn distance(self, random: &mut Random) -> f64 {
+        match self {
+            Self::BesideWrist => random.log_within(1e-6, 2e-2),
+            Self::BesideShoulder => random.log_within(1e-6, 1e-2),
+            _ => random.log_within(1e-8, 1e-6),
+        }
+    }
 }
 
 /// A random move.
-pub struct Move {
-    pub kind: Kind,
-    pub path: ArmPath,
-    pub limits: PathLimits,
+pub(crate) struct Move {
+    pub(crate) kind: Kind,
+    pub(crate) path: ArmPath,
+    pub(crate) limits: PathLimits,
 }
 
 /// Limits of the default cell: full speed in 0.2 s (0.125 s for the wrist), jerk 50 times the acceleration a second.
-pub fn joint_limits() -> TimingLimits<6> {
+pub(crate) fn joint_limits() -> TimingLimits<6> {
     let radians = |values: [f64; 6]| values.map(f64::to_radians);
     let acceleration = radians([1050.0, 1050.0, 1100.0, 3480.0, 3480.0, 5600.0]);
     TimingLimits {
@@ -122,16 +148,16 @@ pub fn joint_limits() -> TimingLimits<6> {
 }
 
 /// A torch: 459 mm ahead of the flange, bent by 22°.
-pub fn torch() -> Pose {
+pub(crate) fn torch() -> Pose {
     let bend = Rotation::from_axis_angle(&Vector3::y_axis(), -22f64.to_radians());
     Pose::from_parts([-0.04383, 0.0, 0.45848].into(), bend)
 }
 
 /// A repeatable source of randomness (splitmix64).
-pub struct Random(pub u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    pub fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -139,11 +165,11 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    pub fn within(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
-    pub fn log_within(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn log_within(&mut self, low: f64, high: f64) -> f64 {
         self.within(low.ln(), high.ln()).exp()
     }
 
@@ -163,7 +189,7 @@ impl Random {
 }
 
 /// A random move of the kind, tried until the arm can follow it.
-pub fn random_move(random: &mut Random, kind: Kind) -> Move {
+pub(crate) fn random_move(random: &mut Random, kind: Kind) -> Move {
     for _ in 0..100_000 {
         if let Some(path) = candidate(random, kind) {
             let speed = random.log_within(0.005, 1.0);
@@ -184,14 +210,17 @@ fn candidate(random: &mut Random, kind: Kind) -> Option<ArmPath> {
     let mut middle = random.joints(&arm);
     match kind {
         Kind::Line | Kind::Arc => {}
-        Kind::BesideWrist => {
+        Kind::BesideWrist | Kind::NeedleWrist => {
             let side = if random.unit() < 0.5 { -1.0 } else { 1.0 };
-            middle[4] = side * random.log_within(1e-6, 2e-2);
+            middle[4] = side * kind.distance(random);
         }
-        Kind::BesideShoulder => middle = above_axis_1(random, &arm)?,
+        Kind::BesideShoulder | Kind::NeedleShoulder => {
+            let distance = kind.distance(random);
+            middle = above_axis_1(random, distance, &arm)?;
+        }
     }
     let pose = arm.forward(&middle) * tool;
-    let length = random.log_within(0.02, 0.8);
+    let length = random.log_within(0.05, 0.8);
     let turn = Rotation::from_scaled_axis(random.direction() * random.within(0.0, 0.5));
     let direction = random.direction();
     let share = random.within(0.3, 0.7);
@@ -212,9 +241,9 @@ fn candidate(random: &mut Random, kind: Kind) -> Option<ArmPath> {
     ArmPath::try_new(path, &tool, 0.0, first)
 }
 
-/// Joints whose wrist centre lies 1 µm to 10 mm from axis 1.
-fn above_axis_1(random: &mut Random, arm: &SphericalWristArm) -> Option<[f64; 6]> {
-    let (radius, angle) = (random.log_within(1e-6, 1e-2), random.within(-3.0, 3.0));
+/// Joints whose wrist centre lies at this distance from axis 1.
+fn above_axis_1(random: &mut Random, radius: f64, arm: &SphericalWristArm) -> Option<[f64; 6]> {
+    let angle = random.within(-3.0, 3.0);
     let position = Vector3::new(radius * angle.cos(), radius * angle.sin(), random.within(0.6, 1.7));
     let rotation = Rotation::from_scaled_axis(random.direction() * random.within(0.0, 3.0));
     let wrist = Pose::from_parts(position.into(), rotation);

@@ -44,8 +44,9 @@ impl Banded {
             let last = (BAND - 1).min(self.rows.len() - 1 - i);
             for below in 1..=last {
                 let factor = column[below] / pivot;
-                for further in below..=last {
-                    self.rows[i + below][further - below] -= factor * column[further];
+                let row = &mut self.rows[i + below];
+                for (element, further) in row.iter_mut().zip(&column[below..=last]) {
+                    *element -= factor * further;
                 }
                 self.rows[i][below] = factor;
             }

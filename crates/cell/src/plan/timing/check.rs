@@ -1,7 +1,7 @@
 //! The judge: how much of each limit a motion along a path takes, between the samples too.
 //!
 //! A piece is sampled with exact derivatives in time and bisected until
-//! - both ends of an interval predict each other (two-point Hermite formulae, of position and of acceleration), so that
+//! - the samples of an interval predict each other (Hermite's formulae for position and velocity, Simpson's for the acceleration), so that
 //!   nothing hides in between: a needle-sharp turn of a wrist shows as a displacement that nothing at the ends foretells;
 //! - the middle lies near the chord wherever the limit is near, so that the parabola through the three samples tells
 //!   what happens between them.
@@ -16,17 +16,30 @@ const FIRST_INTERVALS: f64 = 64.0;
 const DEPTH: usize = 40;
 /// Bound on bisections that only sharpen a peak.
 const SHARPENING_DEPTH: usize = 8;
-/// From this share of a limit on, the peak between samples is made sharp; the second difference allowed then.
-const NEAR: f64 = 0.9;
-const BEND: f64 = 0.02;
-/// A jerk, as a share of its limit, that may stay unseen in an interval of at most `SHARP` seconds.
-const UNSEEN: f64 = 0.02;
+/// From this share of a limit on, samples are made to tell it sharply: by the second difference that they may have, and
+/// by the mean jerk between two of them that they may leave unexplained, as shares.
+const NEAR: f64 = 0.95;
+const BEND: f64 = 0.005;
+const UNEXPLAINED: f64 = 0.001;
+/// What may stay unseen in an interval of at most `SHARP` seconds: a turn, as a share of what the jerk limit could make
+/// of it, and a mean jerk, as a share of the limit.
+const UNSEEN_TURN: f64 = 0.02;
+const UNSEEN_JERK: f64 = 0.002;
 const SHARP: f64 = 5e-3;
-/// Rounding of joint positions in radians, and of accelerations as a share of the limit.
+/// Rounding: of the place, as a share of the path's length; of joint positions in radians; of velocities and
+/// accelerations as a share of the limit or the load.
+const PLACE_NOISE: f64 = 1e-14;
 const POSITION_NOISE: f64 = 1e-9;
-const ACCELERATION_NOISE: f64 = 1e-6;
-/// A jump between places that rounding can hardly tell apart: as a share of the acceleration limit.
-const JUMP: f64 = 0.01;
+const RATE_NOISE: f64 = 1e-6;
+/// Bound on the splits in one piece. A needle takes about a hundred; only a path that is not smooth at any scale takes
+/// more than this.
+const SPLITS: usize = 4000;
+/// Where a limit is passed so far that time would have to be stretched by this, it does not matter how far exactly.
+const CLEAR: f64 = 1.5;
+/// A jump between places that rounding can hardly tell apart: in position, by so many times the rounding; in velocity
+/// and acceleration, as a share of the limit or the load.
+const JUMP_NOISE: f64 = 1e3;
+const JUMPS: [f64; 2] = [1e-6, 1e-2];
 
 /// Highest share of each limit that a stretch of motion takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,14 +53,13 @@ pub(super) struct Load<const N: usize> {
 impl<const N: usize> Load<N> {
     pub(super) const NONE: Self = Self { joints: [[0.0; N]; 3], path: [0.0; 3] };
 
-    pub(super) fn raise(&mut self, other: &Self) {
-        for (mine, theirs) in self.joints.iter_mut().zip(&other.joints) {
-            for (mine, &theirs) in mine.iter_mut().zip(theirs) {
-                *mine = mine.max(theirs);
-            }
-        }
-        for (mine, &theirs) in self.path.iter_mut().zip(&other.path) {
-            *mine = mine.max(theirs);
+    /// The higher of two loads, share by share.
+    pub(super) fn raised(&self, other: &Self) -> Self {
+        Self {
+            joints: core::array::from_fn(|order| {
+                core::array::from_fn(|i| self.joints[order][i].max(other.joints[order][i]))
+            }),
+            path: core::array::from_fn(|order| self.path[order].max(other.path[order])),
         }
     }
 
@@ -72,6 +84,8 @@ struct Sample<const N: usize> {
     /// Velocity, acceleration and jerk as signed shares of their limits.
     shares: [[f64; N]; 3],
     path: [f64; 3],
+    /// What rounding does to position, velocity and acceleration.
+    noise: [[f64; N]; 3],
 }
 
 /// The joints' derivatives in time on a path.
@@ -92,19 +106,21 @@ pub(super) struct Check<'a, const N: usize, P> {
     length: f64,
     joints: &'a TimingLimits<N>,
     limits: &'a PathLimits,
+    /// Right ends of intervals still to be judged, the nearest last, and how often each was split.
+    waiting: Vec<(Sample<N>, usize)>,
 }
 
 impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
     pub(super) fn new(path: &'a mut P, joints: &'a TimingLimits<N>, limits: &'a PathLimits) -> Self {
         let length = path.length();
-        Self { path, length, joints, limits }
+        Self { path, length, joints, limits, waiting: Vec::with_capacity(DEPTH + 1) }
     }
 
     /// The load of a whole motion.
     pub(super) fn pieces(&mut self, pieces: &[TimingPiece]) -> Result<Load<N>, TimingError<P::Error>> {
         let mut load = Load::NONE;
         for piece in pieces {
-            load.raise(&self.piece(piece, |_, _, _| {})?);
+            load = load.raised(&self.piece(piece, |_, _, _| {})?);
         }
         Ok(load)
     }
@@ -120,7 +136,7 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
         let mut start = self.sample(piece, 0.0)?;
         for index in 1..=intervals as usize {
             let end = self.sample(piece, piece.duration * index as f64 / intervals)?;
-            load.raise(&self.interval(piece, &start, &end, &mut each)?);
+            load = load.raised(&self.interval(piece, &start, &end, &mut each)?);
             start = end;
         }
         Ok(load)
@@ -154,11 +170,27 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
         }
         let PathLimits { speed, acceleration, jerk } = *self.limits;
         let path = [state.velocity / speed, state.acceleration / acceleration, state.jerk / jerk];
-        Ok(Sample { time, place, position: jet.position, shares, path })
+        let noise = self.noise(&jet, &state, &shares);
+        Ok(Sample { time, place, position: jet.position, shares, path, noise })
     }
 
-    /// Bisects one interval until every part can be vouched for. The right ends of what is still to be done lie on
-    /// a stack, the nearest on top.
+    fn noise(&self, jet: &JointJet<N>, state: &PathState, shares: &[[f64; N]; 3]) -> [[f64; N]; 3] {
+        let PathState { velocity: v, acceleration: a, .. } = *state;
+        let blur = PLACE_NOISE * self.length;
+        let rounding = |limit: f64, share: f64| RATE_NOISE * limit * share.abs().max(1.0);
+        [
+            jet.velocity.map(|d1| POSITION_NOISE + blur * d1.abs()),
+            core::array::from_fn(|i| {
+                rounding(self.joints.velocity[i], shares[0][i]) + blur * (jet.acceleration[i] * v).abs()
+            }),
+            core::array::from_fn(|i| {
+                let change = jet.jerk[i] * v * v + jet.acceleration[i] * a;
+                rounding(self.joints.acceleration[i], shares[1][i]) + blur * change.abs()
+            }),
+        ]
+    }
+
+    /// Bisects one interval until every part can be vouched for.
     fn interval(
         &mut self,
         piece: &TimingPiece,
@@ -168,59 +200,104 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
     ) -> Result<Load<N>, TimingError<P::Error>> {
         let mut load = Load::NONE;
         let mut left = *start;
-        let mut ends = [(*end, 0); DEPTH + 1];
-        let mut waiting = 1;
-        // Each turn either finishes an interval or splits one, and none is split deeper than DEPTH.
-        while waiting > 0 {
-            let (right, depth) = ends[waiting - 1];
+        self.waiting.clear();
+        self.waiting.push((*end, 0));
+        let mut splits = 0;
+        // Each turn either finishes an interval or splits one, and there are at most SPLITS of these.
+        while let Some((right, depth)) = self.waiting.pop() {
             let middle = self.sample(piece, (left.time + right.time) / 2.0)?;
-            let (part, bend) = peak(&left, &middle, &right);
-            let foretold = self.foretold(&left, &right, &part);
+            let part = highest(&left, &middle, &right);
+            let foretold = self.foretold(&left, &middle, &right, &part);
             if !foretold && depth == DEPTH {
                 self.refuse_jump(&left, &right)?;
             }
-            if depth < DEPTH && (!foretold || (bend && depth < SHARPENING_DEPTH)) {
-                ends[waiting - 1].1 = depth + 1;
-                ends[waiting] = (middle, depth + 1);
-                waiting += 1;
+            let sharp = depth >= SHARPENING_DEPTH || self.sharp(&left, &middle, &right, &part);
+            let clear = part.stretch() > CLEAR;
+            if depth < DEPTH && !clear && !(foretold && sharp) {
+                splits += 1;
+                if splits > SPLITS {
+                    let joint = self.fastest(&left, &right);
+                    return Err(TimingError::Discontinuous { position: right.place, joint });
+                }
+                self.waiting.push((right, depth + 1));
+                self.waiting.push((middle, depth + 1));
                 continue;
             }
             each(left.place, right.place, &part);
-            load.raise(&part);
+            load = load.raised(&part);
             left = right;
-            waiting -= 1;
         }
         Ok(load)
     }
 
-    /// Whether the two ends of an interval predict each other.
-    fn foretold(&self, start: &Sample<N>, end: &Sample<N>, load: &Load<N>) -> bool {
+    /// Whether the samples tell what happens between them to a small part of the limit, wherever that is near.
+    fn sharp(&self, start: &Sample<N>, middle: &Sample<N>, end: &Sample<N>, load: &Load<N>) -> bool {
+        let half = (end.time - start.time) / 2.0;
+        let bend = |order: usize, i: usize| {
+            let at = |sample: &Sample<N>| sample.shares[order][i];
+            (at(start) - 2.0 * at(middle) + at(end)).abs()
+        };
+        // Mean jerk of half an interval, as its limit's share: by the change of acceleration, and by the samples.
+        let unexplained = |a: &Sample<N>, b: &Sample<N>, i: usize| {
+            let change = self.joints.acceleration[i] * (b.shares[1][i] - a.shares[1][i]);
+            let mean = self.joints.jerk[i] * half * (a.shares[2][i] + b.shares[2][i]) / 2.0;
+            let noise = a.noise[2][i] + b.noise[2][i];
+            ((change - mean).abs() - noise) / (self.joints.jerk[i] * half)
+        };
+        (0..N).all(|i| {
+            let bends = (0..3).any(|order| {
+                let share = load.joints[order][i];
+                share > NEAR && bend(order, i) > BEND * share
+            });
+            let share = load.joints[2][i];
+            let hides = share > NEAR
+                && unexplained(start, middle, i).max(unexplained(middle, end, i)) > UNEXPLAINED * share;
+            !bends && !hides
+        })
+    }
+
+    /// Whether the samples of an interval predict each other.
+    fn foretold(&self, start: &Sample<N>, middle: &Sample<N>, end: &Sample<N>, load: &Load<N>) -> bool {
         let t = end.time - start.time;
         let sharp = t.min(SHARP);
         (0..N).all(|i| {
             let change = |order: usize| end.shares[order][i] - start.shares[order][i];
             let sum = |order: usize| end.shares[order][i] + start.shares[order][i];
             let limit = [self.joints.velocity[i], self.joints.acceleration[i], self.joints.jerk[i]];
-            let unseen = UNSEEN * limit[2] * load.joints[2][i].max(1.0);
+            let jerk = limit[2] * load.joints[2][i].max(1.0);
             // q₁ − q₀ = h/2 (q̇₀+q̇₁) − h²/10 (q̈₁−q̈₀) + h³/120 (q⃛₀+q⃛₁) + O(h⁷)
             let position = end.position[i] - start.position[i] - t / 2.0 * limit[0] * sum(0)
                 + t * t / 10.0 * limit[1] * change(1)
                 - t * t * t / 120.0 * limit[2] * sum(2);
-            // q̈₁ − q̈₀ = h/2 (q⃛₀+q⃛₁) + O(h³)
-            let acceleration = limit[1] * change(1) - t / 2.0 * limit[2] * sum(2);
-            let noise = ACCELERATION_NOISE * limit[1] * load.joints[1][i].max(1.0);
-            position.abs() <= unseen * sharp * sharp * sharp + POSITION_NOISE
-                && acceleration.abs() <= 5.0 * unseen * sharp + noise
+            // q̇₁ − q̇₀ = h/2 (q̈₀+q̈₁) − h²/12 (q⃛₁−q⃛₀) + O(h⁵)
+            let velocity =
+                limit[0] * change(0) - t / 2.0 * limit[1] * sum(1) + t * t / 12.0 * limit[2] * change(2);
+            // q̈₁ − q̈₀ = h/6 (q⃛₀ + 4 q⃛ₘ + q⃛₁) + O(h⁵)
+            let mean = (sum(2) + 4.0 * middle.shares[2][i]) / 6.0;
+            let acceleration = limit[1] * change(1) - t * limit[2] * mean;
+            let noise = |order: usize| start.noise[order][i] + end.noise[order][i];
+            position.abs() <= UNSEEN_TURN * jerk * sharp * sharp * sharp + noise(0)
+                && velocity.abs() <= UNSEEN_TURN * jerk * sharp * sharp + noise(1)
+                && acceleration.abs() <= UNSEEN_JERK * jerk * sharp + noise(2)
         })
     }
 
-    /// At the end of all bisection: an error where a joint's position or acceleration jumps.
+    /// The joint that turns most between two places, in terms of its velocity limit.
+    fn fastest(&self, start: &Sample<N>, end: &Sample<N>) -> usize {
+        let turn = |i: &usize| (end.position[*i] - start.position[*i]).abs() / self.joints.velocity[*i];
+        (0..N).max_by(|a, b| turn(a).total_cmp(&turn(b))).unwrap_or(0)
+    }
+
+    /// At the end of all bisection: an error where a joint's position, velocity or acceleration jumps.
     fn refuse_jump(&self, start: &Sample<N>, end: &Sample<N>) -> Result<(), TimingError<P::Error>> {
         let jumps = |i: &usize| {
             let position = (end.position[*i] - start.position[*i]).abs();
-            let acceleration = (end.shares[1][*i] - start.shares[1][*i]).abs();
-            let share = start.shares[1][*i].abs().max(1.0);
-            position > 1e3 * POSITION_NOISE || acceleration > JUMP * share
+            let noise = start.noise[0][*i] + end.noise[0][*i];
+            let steps = |order: usize| {
+                let (before, after) = (start.shares[order][*i], end.shares[order][*i]);
+                (after - before).abs() > JUMPS[order] * before.abs().max(1.0)
+            };
+            position > JUMP_NOISE * noise || steps(0) || steps(1)
         };
         match (0..N).find(jumps) {
             Some(joint) => Err(TimingError::Discontinuous { position: end.place, joint }),
@@ -229,23 +306,91 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
     }
 }
 
-/// The highest shares on three evenly spaced samples and on the parabola through them, and whether that deserves
-/// sharpening.
-fn peak<const N: usize>(start: &Sample<N>, middle: &Sample<N>, end: &Sample<N>) -> (Load<N>, bool) {
-    let mut sharpen = false;
-    let mut highest = |a: f64, m: f64, b: f64| {
+/// The highest shares on three evenly spaced samples and on the parabola through them.
+fn highest<const N: usize>(start: &Sample<N>, middle: &Sample<N>, end: &Sample<N>) -> Load<N> {
+    let highest = |a: f64, m: f64, b: f64| {
         let (slope, bend) = ((b - a) / 2.0, a - 2.0 * m + b);
-        let sampled = a.abs().max(m.abs()).max(b.abs());
         let vertex = if slope.abs() < bend.abs() { (m - slope * slope / (2.0 * bend)).abs() } else { 0.0 };
-        let highest = sampled.max(vertex);
-        sharpen |= highest > NEAR && bend.abs() > BEND * highest;
-        highest
+        a.abs().max(m.abs()).max(b.abs()).max(vertex)
     };
-    let joints = core::array::from_fn(|order| {
-        core::array::from_fn(|i| {
-            highest(start.shares[order][i], middle.shares[order][i], end.shares[order][i])
-        })
-    });
-    let path = core::array::from_fn(|order| highest(start.path[order], middle.path[order], end.path[order]));
-    (Load { joints, path }, sharpen)
+    Load {
+        joints: core::array::from_fn(|order| {
+            core::array::from_fn(|i| {
+                highest(start.shares[order][i], middle.shares[order][i], end.shares[order][i])
+            })
+        }),
+        path: core::array::from_fn(|order| highest(start.path[order], middle.path[order], end.path[order])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::timing::s_curve::SCurve;
+
+    /// A joint that turns by nearly π about the middle of a path of length 1: q = atan((s − ½)/δ).
+    struct Needle(f64);
+
+    impl JointPath<1> for Needle {
+        type Error = ();
+
+        fn length(&self) -> f64 {
+            1.0
+        }
+
+        fn jet(&mut self, s: f64) -> Result<JointJet<1>, ()> {
+            let width = self.0;
+            let x = (s - 0.5) / width;
+            let one = 1.0 + x * x;
+            Ok(JointJet {
+                position: [x.atan()],
+                velocity: [1.0 / (width * one)],
+                acceleration: [-2.0 * x / (width * one).powi(2)],
+                jerk: [(6.0 * x * x - 2.0) / (width * one).powi(3)],
+            })
+        }
+    }
+
+    const JOINT: TimingLimits<1> = TimingLimits { velocity: [1.0], acceleration: [10.0], jerk: [500.0] };
+    const PATH: PathLimits = PathLimits { speed: 0.1, acceleration: 2.0, jerk: 100.0 };
+
+    /// Needles from 1 cm down to 1 nm, much narrower than the first samples' distance, are all seen; the widest is
+    /// measured to a part in a thousand.
+    #[test]
+    fn no_needle_slips_through() {
+        let pieces = SCurve::new(1.0, &PATH).pieces();
+        for decade in 2..10 {
+            let width = 10f64.powi(-decade);
+            let load = Check::new(&mut Needle(width), &JOINT, &PATH).pieces(&pieces).unwrap();
+            assert!(load.stretch() > CLEAR, "{width}");
+        }
+        let slow: Vec<TimingPiece> = pieces.iter().map(|piece| piece.stretched(10.0)).collect();
+        let load = Check::new(&mut Needle(0.01), &JOINT, &PATH).pieces(&slow).unwrap();
+        let v = PATH.speed / 10.0;
+        // Highest q′, q″ and q‴ of the arctangent.
+        let highest = [v / 0.01, 0.649_519 * (v / 0.01).powi(2), 2.0 * (v / 0.01).powi(3)];
+        for (order, limit) in [1.0, 10.0, 500.0].into_iter().enumerate() {
+            let wanted = highest[order] / limit;
+            assert!((load.joints[order][0] / wanted - 1.0).abs() < 1e-2, "{order}: {load:?}");
+        }
+    }
+
+    /// A path that is noise at every scale ends in an error, not in endless bisection.
+    #[test]
+    fn noise_is_given_up() {
+        struct Noise;
+        impl JointPath<1> for Noise {
+            type Error = ();
+            fn length(&self) -> f64 {
+                1.0
+            }
+            fn jet(&mut self, s: f64) -> Result<JointJet<1>, ()> {
+                let noise = (s * 1e17).sin() * 1e-4;
+                Ok(JointJet { position: [noise], velocity: [0.1], acceleration: [0.0], jerk: [0.0] })
+            }
+        }
+        let pieces = SCurve::new(1.0, &PATH).pieces();
+        let found = Check::new(&mut Noise, &JOINT, &PATH).pieces(&pieces);
+        assert!(matches!(found, Err(TimingError::Discontinuous { joint: 0, .. })));
+    }
 }

@@ -88,7 +88,7 @@ impl Coordinate {
         let first: [f64; 4] = core::array::from_fn(|i| c[i + 1] - c[i]);
         let second: [f64; 3] = core::array::from_fn(|i| first[i + 1] - first[i]);
         let third: [f64; 2] = core::array::from_fn(|i| second[i + 1] - second[i]);
-        if site % 2 == 0 {
+        if site.is_multiple_of(2) {
             return CoordinateJet {
                 s: c[2] + (first[3] - first[0] + 27.0 * (first[2] - first[1])) / 120.0,
                 d1: (first[0] + 11.0 * (first[1] + first[2]) + first[3]) / (24.0 * h),
@@ -129,6 +129,49 @@ fn close(controls: &mut [f64], place: f64, pace: f64, end: End) {
             for (index, control) in controls[..=2 * PAD].iter_mut().enumerate() {
                 *control = place + pace * (index as f64 - PAD as f64);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From rest a cubic t³ is reproduced to rounding, derivatives and half knots included.
+    #[test]
+    fn a_cubic_from_rest_is_reproduced() {
+        let step = 0.004;
+        let cubic = |t: f64| PathState {
+            position: 2.0 * t.powi(3),
+            velocity: 6.0 * t * t,
+            acceleration: 12.0 * t,
+            jerk: 12.0,
+        };
+        let samples: Vec<f64> =
+            (0..30).map(|knot| quasi_interpolant(&cubic(f64::from(knot) * step), step)).collect();
+        let coordinate = Coordinate::new(&samples, step, [End::Rest; 2], 1.0);
+        // The last eight sites feel that the motion is to stop there.
+        for site in 0..coordinate.sites() - 8 {
+            let (found, wanted) = (coordinate.at(site), cubic(site as f64 * step / 2.0));
+            assert!((found.s - wanted.position).abs() < 1e-16, "{site}");
+            assert!((found.d1 - wanted.velocity).abs() < 1e-13, "{site}");
+            assert!((found.d2 - wanted.acceleration).abs() < 1e-10, "{site}");
+            assert!((found.d3 - wanted.jerk).abs() < 1e-7, "{site}");
+        }
+        let end = coordinate.at(coordinate.sites() - 1);
+        assert_eq!(end.s, samples[29]);
+        assert!(end.d1.abs() < 1e-13 && end.d2.abs() < 1e-10);
+    }
+
+    #[test]
+    fn a_cruise_is_met_exactly() {
+        let (step, speed) = (0.005, 0.3);
+        let samples: Vec<f64> = (0..20).map(|knot| 1.0 + f64::from(knot) * step * speed).collect();
+        let coordinate = Coordinate::new(&samples, step, [End::Cruise; 2], speed);
+        for site in 0..coordinate.sites() {
+            let jet = coordinate.at(site);
+            assert!((jet.s - 1.0 - site as f64 * step * speed / 2.0).abs() < 1e-14);
+            assert!((jet.d1 - speed).abs() < 1e-12 && jet.d2.abs() < 1e-9 && jet.d3.abs() < 1e-6);
         }
     }
 }

@@ -15,8 +15,9 @@ const PASS_SHARE: f64 = 0.8;
 const SPEED_CHANGE: f64 = 0.15;
 const JOINT_CHANGE: f64 = 0.03;
 const TIME_CHANGE: f64 = 0.01;
-/// Bound on bisections.
+/// Bounds on bisections and on places.
 const DEPTH: usize = 48;
+const PLACES: usize = 100_000;
 /// The filter: moving averages over twice this many knots and one.
 const AVERAGES: [usize; 2] = [2, 1];
 /// Within so many knots of a rest end the filter fades out: rest is smooth by itself.
@@ -58,14 +59,20 @@ pub(super) fn coordinate<const N: usize, P: JointPath<N>>(
     places.reverse();
     let times = times(&places, &window.ends);
     let duration = times[times.len() - 1];
-    let knots = ((duration / step).ceil() as usize).max(LEAST_INTERVALS) + 1;
+    let knots = knots(duration, step);
     let step = duration / (knots - 1) as f64;
     let samples = sampled(&places, &times, knots, &window.ends);
     Ok(Coordinate::new(&smoothed(&samples, &window.ends), step, window.ends, limits.speed))
 }
 
-/// Fewest intervals between knots.
-const LEAST_INTERVALS: usize = 12;
+/// Number of knots for a duration: at least a few, and not more than memory is for.
+pub(super) fn knots(duration: f64, step: f64) -> usize {
+    let [least, most] = INTERVALS;
+    (duration / step).ceil().clamp(least, most) as usize + 1
+}
+
+/// Fewest and most intervals between knots.
+const INTERVALS: [f64; 2] = [12.0, 20_000.0];
 
 impl<const N: usize, P: JointPath<N>> Survey<'_, N, P> {
     fn jet(&mut self, s: f64) -> Result<JointJet<N>, TimingError<P::Error>> {
@@ -106,7 +113,7 @@ impl<const N: usize, P: JointPath<N>> Survey<'_, N, P> {
         let mut waiting = vec![(self.place(to)?, 0)];
         while let Some(&(right, depth)) = waiting.last() {
             let left = places[places.len() - 1];
-            if depth < DEPTH && self.coarse(&left, &right) {
+            if depth < DEPTH && places.len() < PLACES && self.coarse(&left, &right) {
                 let middle = self.place((left.s + right.s) / 2.0)?;
                 if let Some(last) = waiting.last_mut() {
                     last.1 = depth + 1;

@@ -2,23 +2,25 @@
 //! iteration, infeasible starts allowed.
 //!
 //! Unknowns are the controls c of β, one a knot and one more at either end; for each row g(c) ≤ 0 a slack s > 0 with
-//! g + s = 0, and a dual λ > 0. Each iteration costs one factorization of a banded matrix and four sweeps over
-//! the rows.
+//! g + s = 0, and a dual λ > 0. Each iteration costs one factorization of a banded matrix and three sweeps over the
+//! rows.
 
 use super::banded::Banded;
-use super::program::{Point, Program, ROWS};
+use super::program::{Point, Program, Rows};
 
 /// Bound on iterations.
 const ITERATIONS: usize = 50;
-/// Done when the duality gap, as a share of the duration, the dual residual likewise, and the rows' residual fall below.
-const GAP: f64 = 5e-4;
-const DUAL_RESIDUAL: f64 = 2e-3;
+/// The dual residual may be so many times the duality gap, which is what the accuracy speaks of; the rows' residual.
+const DUAL_RESIDUAL: f64 = 4.0;
 const RESIDUAL: f64 = 1e-5;
 /// Start: share of the highest constant β, the least slack, and the product of slack and dual.
 const START_SHARE: f64 = 0.9;
 const START_RANGE: [f64; 2] = [0.02, 1.0];
 const START_SLACK: f64 = 0.1;
 const START_PRODUCT: f64 = 0.02;
+/// The same from an earlier solution.
+const AGAIN_SLACK: f64 = 0.01;
+const AGAIN_PRODUCT: f64 = 1e-4;
 /// Knots over which a start blends from a held end.
 const BLEND: f64 = 40.0;
 /// Share of the way to the boundary that a step may go, and the most by which β may shrink in one.
@@ -42,10 +44,10 @@ pub(super) enum Outcome {
 pub(super) struct InteriorPoint {
     controls: Vec<f64>,
     points: Vec<Point>,
-    slack: Vec<[f64; ROWS]>,
-    dual: Vec<[f64; ROWS]>,
-    slack_step: Vec<[f64; ROWS]>,
-    dual_step: Vec<[f64; ROWS]>,
+    slack: Vec<Rows>,
+    dual: Vec<Rows>,
+    slack_step: Vec<Rows>,
+    dual_step: Vec<Rows>,
     matrix: Banded,
     /// Right-hand side without centring, and what centring adds for a unit product.
     right: Vec<f64>,
@@ -58,7 +60,7 @@ pub(super) struct InteriorPoint {
 struct Progress {
     /// Σ s λ
     gap: f64,
-    /// Highest |g + s|.
+    /// Highest g + s.
     residual: f64,
     /// Σ |(∇F + Gᵀ λ) c|
     dual_residual: f64,
@@ -67,14 +69,36 @@ struct Progress {
 }
 
 impl InteriorPoint {
-    /// Solves; the controls of β are in [`InteriorPoint::controls`] afterwards.
-    pub(super) fn solve(&mut self, program: &Program) -> Outcome {
+    /// Solves a new problem; the controls of β are in [`InteriorPoint::controls`] afterwards.
+    pub(super) fn solve(&mut self, program: &Program, accuracy: f64) -> Outcome {
         self.start(program);
+        self.iterate(program, accuracy)
+    }
+
+    /// Solves the last problem again after small changes to its demands.
+    pub(super) fn solve_again(&mut self, program: &Program, accuracy: f64) -> Outcome {
+        for (index, demand) in program.demands.iter().enumerate() {
+            let rows = demand.rows(&self.points[index / program.axes]);
+            for (row, g) in rows.into_iter().enumerate() {
+                let slack = (-g).max(AGAIN_SLACK);
+                self.slack[index][row] = slack;
+                self.dual[index][row] = self.dual[index][row].max(AGAIN_PRODUCT / slack);
+            }
+        }
+        self.iterate(program, accuracy)
+    }
+
+    /// Controls of β: knot k lies under number k + 1.
+    pub(super) fn controls(&self) -> &[f64] {
+        &self.controls
+    }
+
+    fn iterate(&mut self, program: &Program, accuracy: f64) -> Outcome {
         for iteration in 0..ITERATIONS {
             self.iterations = iteration;
             let progress = self.assemble(program);
-            let done = progress.gap <= GAP * progress.duration
-                && progress.dual_residual <= DUAL_RESIDUAL * progress.duration
+            let done = progress.gap <= accuracy * progress.duration
+                && progress.dual_residual <= DUAL_RESIDUAL * accuracy * progress.duration
                 && progress.residual <= RESIDUAL;
             if done {
                 return Outcome::Converged;
@@ -95,11 +119,6 @@ impl InteriorPoint {
         Outcome::OutOfIterations
     }
 
-    /// Controls of β: knot k lies under number k + 1.
-    pub(super) fn controls(&self) -> &[f64] {
-        &self.controls
-    }
-
     fn start(&mut self, program: &Program) {
         let size = program.intervals() + 3;
         let [low, high] = START_RANGE;
@@ -115,14 +134,13 @@ impl InteriorPoint {
             value
         }));
         self.set_points(program);
-        let rows = program.demands.len();
         for memory in [&mut self.slack, &mut self.dual, &mut self.slack_step, &mut self.dual_step] {
             memory.clear();
-            memory.resize(rows, [0.0; ROWS]);
+            memory.resize(program.demands.len(), Rows::default());
         }
         for (index, demand) in program.demands.iter().enumerate() {
-            let (values, _) = self.points[index / program.axes].rows(demand);
-            self.slack[index] = values.map(|g| (-g).max(START_SLACK));
+            let rows = demand.rows(&self.points[index / program.axes]);
+            self.slack[index] = rows.map(|g| (-g).max(START_SLACK));
             self.dual[index] = self.slack[index].map(|s| START_PRODUCT / s);
         }
     }
@@ -146,36 +164,29 @@ impl InteriorPoint {
         self.direction.resize(size, 0.0);
         for index in 0..program.sites() {
             let (site, point) = (program.site(index), self.points[index]);
+            let tangent = point.tangent();
             let (gradient, curvature) = objective(program, index, &point, &mut progress.duration);
             let mut square = [curvature[0], 0.0, 0.0, curvature[1], 0.0, curvature[2]];
             let mut right = gradient.map(|g| -g);
             let mut stationary = gradient;
             for index in index * axes..(index + 1) * axes {
-                let (values, gradients) = point.rows(&program.demands[index]);
-                for row in 0..ROWS {
-                    let (g, [x, y, z]) = (values[row], gradients[row]);
-                    let dual = self.dual[index][row];
+                let demand = &program.demands[index];
+                let rows = demand.rows(&point);
+                let (slacks, duals) = (&mut self.slack[index], &self.dual[index]);
+                let (mut weights, mut pulls) = (Rows::default(), Rows::default());
+                for (row, &g) in rows.iter().enumerate() {
                     // The true jerk row lies below its tangent: what it gives is slack at once.
-                    let slack = self.slack[index][row].max(-g);
-                    self.slack[index][row] = slack;
-                    let weight = dual / slack;
+                    let slack = larger(slacks[row], -g);
+                    slacks[row] = slack;
                     let residual = g + slack;
-                    progress.gap += slack * dual;
-                    progress.residual = progress.residual.max(residual.abs());
-                    let (wx, wy, wz) = (weight * x, weight * y, weight * z);
-                    square[0] += wx * x;
-                    square[1] += wx * y;
-                    square[2] += wx * z;
-                    square[3] += wy * y;
-                    square[4] += wy * z;
-                    square[5] += wz * z;
-                    right[0] -= wx * residual;
-                    right[1] -= wy * residual;
-                    right[2] -= wz * residual;
-                    stationary[0] += dual * x;
-                    stationary[1] += dual * y;
-                    stationary[2] += dual * z;
+                    weights[row] = duals[row] / slack;
+                    pulls[row] = -weights[row] * residual;
+                    progress.gap += slack * duals[row];
+                    progress.residual = larger(residual, progress.residual);
                 }
+                add(&mut square, &demand.square(tangent, &weights));
+                add(&mut right, &demand.gradient(tangent, &pulls));
+                add(&mut stationary, &demand.gradient(tangent, duals));
             }
             self.matrix.add(site.interval, &site.square(&square));
             site.spread(&right, &mut self.right);
@@ -192,41 +203,51 @@ impl InteriorPoint {
     /// Predictor, corrector, and the step.
     fn step(&mut self, program: &Program, progress: &Progress) {
         let axes = program.axes;
-        let count = (program.demands.len() * ROWS) as f64;
+        let count = (program.demands.len() * Rows::default().len()) as f64;
         self.set_direction(program, 0.0);
-        // The predictor's steps: how far they could go, and what the products would become.
         self.centring.clear();
         self.centring.resize(self.controls.len(), 0.0);
-        let (mut primal, mut dual_length) = (1.0f64, 1.0f64);
+        // The predictor's steps: the greatest relative losses, and what the products would become.
+        let (mut slack_loss, mut dual_loss) = (1.0f64, 1.0f64);
         let (mut by_slack, mut by_dual, mut by_both) = (0.0, 0.0, 0.0);
         for index in 0..program.sites() {
             let (site, point) = (program.site(index), self.points[index]);
-            let along = site.value(&self.direction);
-            let (mut inverse, mut second) = ([0.0; 3], [0.0; 3]);
+            let tangent = point.tangent();
+            let direction = site.value(&self.direction);
+            let (mut centring, mut second) = ([0.0; 3], [0.0; 3]);
             for index in index * axes..(index + 1) * axes {
-                let (values, gradients) = point.rows(&program.demands[index]);
-                for row in 0..ROWS {
-                    let (slack, dual) = (self.slack[index][row], self.dual[index][row]);
-                    let slack_step = -(values[row] + slack) - dot(&gradients[row], &along);
-                    let dual_step = -dual - dual / slack * slack_step;
-                    primal = limited(primal, slack, slack_step);
-                    dual_length = limited(dual_length, dual, dual_step);
+                let demand = &program.demands[index];
+                let (rows, along) = (demand.rows(&point), demand.along(tangent, &direction));
+                let (slacks, duals) = (&self.slack[index], &self.dual[index]);
+                let (mut inverses, mut corrections) = (Rows::default(), Rows::default());
+                for row in 0..rows.len() {
+                    let (slack, dual, inverse) = (slacks[row], duals[row], 1.0 / slacks[row]);
+                    let slack_step = -(rows[row] + slack) - along[row];
+                    let relative = slack_step * inverse;
+                    let dual_step = -dual * (1.0 + relative);
+                    slack_loss = larger(-relative, slack_loss);
+                    dual_loss = larger(1.0 + relative, dual_loss);
+                    let product = slack_step * dual_step;
                     by_slack += slack_step * dual;
                     by_dual += slack * dual_step;
-                    by_both += slack_step * dual_step;
-                    let product = slack_step * dual_step;
-                    self.slack_step[index][row] = product;
-                    for axis in 0..3 {
-                        inverse[axis] += gradients[row][axis] / slack;
-                        second[axis] += gradients[row][axis] * product / slack;
-                    }
+                    by_both += product;
+                    inverses[row] = inverse;
+                    corrections[row] = product * inverse;
                 }
+                // Kept for the corrector.
+                self.dual_step[index] = corrections;
+                self.slack_step[index] = inverses;
+                add(&mut centring, &demand.gradient(tangent, &inverses));
+                add(&mut second, &demand.gradient(tangent, &corrections));
             }
-            site.spread(&inverse, &mut self.centring);
+            site.spread(&centring, &mut self.centring);
             site.spread(&second, &mut self.right);
         }
-        let reached =
-            progress.gap + primal * by_slack + dual_length * by_dual + primal * dual_length * by_both;
+        let (slack_length, dual_length) = (1.0 / slack_loss, 1.0 / dual_loss);
+        let reached = progress.gap
+            + slack_length * by_slack
+            + dual_length * by_dual
+            + slack_length * dual_length * by_both;
         let share = (reached / progress.gap).clamp(0.0, 1.0);
         let product = share * share * share * progress.gap / count;
         self.set_direction(program, product);
@@ -248,30 +269,37 @@ impl InteriorPoint {
     /// Goes along the corrected direction, as far as slacks, duals and β stay positive.
     fn advance(&mut self, program: &Program, product: f64) {
         let axes = program.axes;
-        let (mut primal, mut dual_length) = (1.0f64, 1.0f64);
+        let (mut slack_loss, mut dual_loss) = (1.0f64, 1.0f64);
         for index in 0..program.sites() {
             let (site, point) = (program.site(index), self.points[index]);
-            let along = site.value(&self.direction);
-            primal = limited(primal, (1.0 - SHRINK) * point.x[0], along[0]);
+            let tangent = point.tangent();
+            let direction = site.value(&self.direction);
+            slack_loss = slack_loss.max(-direction[0] / ((1.0 - SHRINK) * point.x[0]));
             for index in index * axes..(index + 1) * axes {
-                let (values, gradients) = point.rows(&program.demands[index]);
-                for row in 0..ROWS {
-                    let (slack, dual) = (self.slack[index][row], self.dual[index][row]);
-                    let second = self.slack_step[index][row];
-                    let slack_step = -(values[row] + slack) - dot(&gradients[row], &along);
-                    let dual_step = (product - second - dual * slack_step) / slack - dual;
-                    primal = limited(primal, slack, slack_step);
-                    dual_length = limited(dual_length, dual, dual_step);
-                    self.slack_step[index][row] = slack_step;
-                    self.dual_step[index][row] = dual_step;
+                let demand = &program.demands[index];
+                let (rows, along) = (demand.rows(&point), demand.along(tangent, &direction));
+                let (slacks, duals) = (&self.slack[index], &self.dual[index]);
+                let (inverses, corrections) = (self.slack_step[index], self.dual_step[index]);
+                let (mut slack_steps, mut dual_steps) = (Rows::default(), Rows::default());
+                for row in 0..rows.len() {
+                    let (slack, dual, inverse) = (slacks[row], duals[row], inverses[row]);
+                    let slack_step = -(rows[row] + slack) - along[row];
+                    let dual_step = (product - dual * slack_step) * inverse - corrections[row] - dual;
+                    slack_loss = larger(-slack_step * inverse, slack_loss);
+                    dual_loss = larger(-dual_step / dual, dual_loss);
+                    slack_steps[row] = slack_step;
+                    dual_steps[row] = dual_step;
                 }
+                self.slack_step[index] = slack_steps;
+                self.dual_step[index] = dual_steps;
             }
         }
-        let (primal, dual_length) = (TO_BOUNDARY * primal, TO_BOUNDARY * dual_length);
-        move_along(&mut self.slack, &self.slack_step, primal);
+        // A loss of 1 or less lets the whole step stand.
+        let (slack_length, dual_length) = (TO_BOUNDARY / slack_loss, TO_BOUNDARY / dual_loss);
+        move_along(&mut self.slack, &self.slack_step, slack_length);
         move_along(&mut self.dual, &self.dual_step, dual_length);
         for (control, step) in self.controls.iter_mut().zip(&self.direction) {
-            *control += primal * step;
+            *control += slack_length * step;
         }
         self.set_points(program);
     }
@@ -301,15 +329,19 @@ fn objective(program: &Program, site: usize, point: &Point, duration: &mut f64) 
     ([gradient, smooth * slope, smooth * bend], [curvature, smooth, smooth])
 }
 
-fn limited(length: f64, value: f64, step: f64) -> f64 {
-    if step < 0.0 { length.min(-value / step) } else { length }
+/// The larger of two numbers; `b` where `a` is none. One instruction, unlike `f64::max`.
+#[inline]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+fn add<const K: usize>(to: &mut [f64; K], values: &[f64; K]) {
+    for (to, value) in to.iter_mut().zip(values) {
+        *to += value;
+    }
 }
 
-fn move_along(values: &mut [[f64; ROWS]], steps: &[[f64; ROWS]], length: f64) {
+fn move_along(values: &mut [Rows], steps: &[Rows], length: f64) {
     for (values, steps) in values.iter_mut().zip(steps) {
         for (value, step) in values.iter_mut().zip(steps) {
             *value += length * step;

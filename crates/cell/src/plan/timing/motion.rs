@@ -203,3 +203,58 @@ impl Timing {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_joining_piece_meets_both_ends() {
+        let start = PathState { position: 0.3, velocity: 0.2, acceleration: -1.0, jerk: 0.0 };
+        let end = PathState { position: 0.301, velocity: 0.25, acceleration: 2.0, jerk: 0.0 };
+        let piece = TimingPiece::joining(&start, &end, 0.004);
+        let (first, last) = (piece.at(0.0), piece.end());
+        assert_eq!((first.position, first.velocity, first.acceleration), (0.3, 0.2, -1.0));
+        assert!((last.position - end.position).abs() < 1e-15);
+        assert!((last.velocity - end.velocity).abs() < 1e-12);
+        assert!((last.acceleration - end.acceleration).abs() < 1e-9);
+    }
+
+    /// Derivatives of a piece against differences of its own values, and the same way in 1.7 times the time.
+    #[test]
+    fn a_piece_is_its_own_derivative_and_stretches() {
+        let piece = TimingPiece {
+            duration: 2.0,
+            position: 1.0,
+            velocity: -0.5,
+            acceleration: 0.25,
+            jerk: 2.0,
+            snap: -3.0,
+            crackle: 1.5,
+        };
+        let (t, h, factor) = (1.1, 1e-5, 1.7);
+        let [before, here, after] = [t - h, t, t + h].map(|t| piece.at(t));
+        let slope = |pick: fn(&PathState) -> f64| (pick(&after) - pick(&before)) / (2.0 * h);
+        assert!((slope(|state| state.position) - here.velocity).abs() < 1e-8);
+        assert!((slope(|state| state.velocity) - here.acceleration).abs() < 1e-8);
+        assert!((slope(|state| state.acceleration) - here.jerk).abs() < 1e-8);
+        let slow = piece.stretched(factor).at(t * factor);
+        assert!((slow.position - here.position).abs() < 1e-14);
+        assert!((slow.velocity * factor - here.velocity).abs() < 1e-14);
+        assert!((slow.acceleration * factor.powi(2) - here.acceleration).abs() < 1e-14);
+        assert!((slow.jerk * factor.powi(3) - here.jerk).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_timing_finds_its_pieces_and_stays_at_its_ends() {
+        let cruise =
+            |position: f64| TimingPiece { duration: 0.5, position, velocity: 2.0, ..TimingPiece::default() };
+        let timing = Timing::new(vec![cruise(0.0), cruise(1.0), cruise(2.0)], TimingKind::Plain, Vec::new());
+        assert_eq!(timing.duration(), 1.5);
+        for (time, place) in
+            [(-1.0, 0.0), (0.0, 0.0), (0.25, 0.5), (0.5, 1.0), (1.25, 2.5), (1.5, 3.0), (9.0, 3.0)]
+        {
+            assert_eq!(timing.at(time).position, place, "{time}");
+        }
+    }
+}

@@ -38,9 +38,6 @@ impl Demand {
     }
 }
 
-/// Rows of one demand: velocity, acceleration up and down, jerk up and down.
-pub(super) const ROWS: usize = 5;
-
 /// Controls that matter at a site.
 pub(super) const SUPPORT: usize = 4;
 
@@ -116,31 +113,65 @@ impl Point {
         Self { x, root: 1.0 / x[0].sqrt() }
     }
 
-    /// Rows of `demand` that must not be positive, with their gradients. The gradient of the jerk's rows is that of
-    /// its tangent.
+    /// Slope of the tangent to −β^(−1/2).
+    pub(super) fn tangent(&self) -> f64 {
+        self.root / (2.0 * self.x[0])
+    }
+}
+
+/// A number for each row of a demand: velocity, acceleration up and down, jerk up and down.
+pub(super) type Rows = [f64; 5];
+
+impl Demand {
+    /// The rows at a point; none of them may be positive.
     #[inline]
-    pub(super) fn rows(&self, demand: &Demand) -> ([f64; ROWS], [[f64; 3]; ROWS]) {
-        let [beta, slope, bend] = self.x;
-        let Demand { velocity, acceleration: [a0, a1], jerk: [j0, j1, j2] } = *demand;
-        let acceleration = a0 * beta + a1 * slope;
-        let jerk = j0 * beta + j1 * slope + j2 * bend;
-        let tangent = self.root / (2.0 * beta);
-        (
-            [
-                velocity * beta - 1.0,
-                acceleration - 1.0,
-                -acceleration - 1.0,
-                jerk - self.root,
-                -jerk - self.root,
-            ],
-            [
-                [velocity, 0.0, 0.0],
-                [a0, a1, 0.0],
-                [-a0, -a1, 0.0],
-                [j0 + tangent, j1, j2],
-                [-j0 + tangent, -j1, -j2],
-            ],
-        )
+    pub(super) fn rows(&self, point: &Point) -> Rows {
+        let [velocity, acceleration, jerk] = self.image(&point.x);
+        let root = point.root;
+        [velocity - 1.0, acceleration - 1.0, -acceleration - 1.0, jerk - root, -jerk - root]
+    }
+
+    /// How the rows change along a direction of (β, h β′, h² β″); the jerk's rows by their tangent.
+    #[inline]
+    pub(super) fn along(&self, tangent: f64, direction: &[f64; 3]) -> Rows {
+        let [velocity, acceleration, jerk] = self.image(direction);
+        let bound = tangent * direction[0];
+        [velocity, acceleration, -acceleration, bound + jerk, bound - jerk]
+    }
+
+    /// The sum of the rows' gradients, weighted.
+    #[inline]
+    pub(super) fn gradient(&self, tangent: f64, weights: &Rows) -> [f64; 3] {
+        let [velocity, up, down, jerk_up, jerk_down] = *weights;
+        let ([a0, a1], [j0, j1, j2]) = (self.acceleration, self.jerk);
+        let (a, j) = (up - down, jerk_up - jerk_down);
+        let bound = tangent * (jerk_up + jerk_down);
+        [self.velocity * velocity + a0 * a + j0 * j + bound, a1 * a + j1 * j, j2 * j]
+    }
+
+    /// The sum of the gradients' squares g gᵀ, weighted: lower triangle by columns.
+    #[inline]
+    pub(super) fn square(&self, tangent: f64, weights: &Rows) -> [f64; 6] {
+        let [velocity, up, down, jerk_up, jerk_down] = *weights;
+        let ([a0, a1], [j0, j1, j2]) = (self.acceleration, self.jerk);
+        let (a, j) = (up + down, jerk_up + jerk_down);
+        let bound = tangent * (jerk_up - jerk_down);
+        [
+            self.velocity * self.velocity * velocity
+                + a * a0 * a0
+                + j * (j0 * j0 + tangent * tangent)
+                + 2.0 * bound * j0,
+            a * a0 * a1 + j * j0 * j1 + bound * j1,
+            j * j0 * j2 + bound * j2,
+            a * a1 * a1 + j * j1 * j1,
+            j * j1 * j2,
+            j * j2 * j2,
+        ]
+    }
+
+    fn image(&self, x: &[f64; 3]) -> [f64; 3] {
+        let ([a0, a1], [j0, j1, j2]) = (self.acceleration, self.jerk);
+        [self.velocity * x[0], a0 * x[0] + a1 * x[1], j0 * x[0] + j1 * x[1] + j2 * x[2]]
     }
 }
 

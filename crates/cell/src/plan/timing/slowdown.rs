@@ -18,22 +18,27 @@ pub(super) fn slowdowns<const N: usize, P: JointPath<N>>(
 ) -> Result<Vec<Slowdown>, TimingError<P::Error>> {
     let mut found = Vec::new();
     let mut open: Option<(Slowdown, Cause)> = None;
-    let (from, to) = (curve.ramp(), curve.length - curve.ramp());
+    let (first, last) = (curve.ramp(), curve.length - curve.ramp());
+    // A slowdown reaches from the last look before it to the first after it.
+    let mut before = first;
     for look in 0..pieces.len() * LOOKS {
         let piece = &pieces[look / LOOKS];
         let state = piece.at(piece.duration * (look % LOOKS) as f64 / LOOKS as f64);
-        let slow = state.velocity < HELD * curve.speed && (from..=to).contains(&state.position);
-        if !slow {
-            found.extend(open.take().map(|(slowdown, cause)| closed(slowdown, &cause, curve.speed)));
+        let place = state.position;
+        if !(first..=last).contains(&place) {
             continue;
         }
-        let place = state.position;
+        if state.velocity >= HELD * curve.speed {
+            found.extend(open.take().map(|(slowdown, cause)| closed(slowdown, place, &cause)));
+            before = place;
+            continue;
+        }
         let jet = task.path.jet(place).map_err(|error| TimingError::Path { position: place, error })?;
         let cause = Cause::at(&jet, task.joints);
         match &mut open {
             None => {
                 let slowdown = Slowdown {
-                    from: place,
+                    from: before,
                     to: place,
                     place,
                     speed: state.velocity,
@@ -44,7 +49,6 @@ pub(super) fn slowdowns<const N: usize, P: JointPath<N>>(
                 open = Some((slowdown, cause));
             }
             Some((slowdown, worst)) => {
-                slowdown.to = place;
                 if state.velocity < slowdown.speed {
                     (slowdown.place, slowdown.speed) = (place, state.velocity);
                 }
@@ -52,7 +56,7 @@ pub(super) fn slowdowns<const N: usize, P: JointPath<N>>(
             }
         }
     }
-    found.extend(open.take().map(|(slowdown, cause)| closed(slowdown, &cause, curve.speed)));
+    found.extend(open.take().map(|(slowdown, cause)| closed(slowdown, last, &cause)));
     Ok(found)
 }
 
@@ -93,11 +97,11 @@ impl Cause {
 
 /// The finished entry. Where every place would allow the programmed speed, it is gaining or losing speed that the joints
 /// cannot do fast enough.
-fn closed(slowdown: Slowdown, cause: &Cause, programmed: f64) -> Slowdown {
+fn closed(slowdown: Slowdown, to: f64, cause: &Cause) -> Slowdown {
     let (speed, joint, order) = cause.speed;
-    if speed < programmed {
-        Slowdown { sustainable: speed, joint, order, ..slowdown }
+    if speed < slowdown.sustainable {
+        Slowdown { to, sustainable: speed, joint, order, ..slowdown }
     } else {
-        Slowdown { joint: cause.acceleration.1, order: Order::Acceleration, ..slowdown }
+        Slowdown { to, joint: cause.acceleration.1, order: Order::Acceleration, ..slowdown }
     }
 }

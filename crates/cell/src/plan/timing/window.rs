@@ -7,12 +7,14 @@ use super::motion::{PathState, TimingPiece};
 use super::program::{Demand, Program};
 use super::{JointPath, PathLimits, TimingError, TimingLimits, crude};
 
-/// Distance of knots in seconds, on the way from the first guess to the motion.
+/// Distance of knots in seconds: on the first guess, and on the motion.
+const COARSE_STEP: f64 = 16e-3;
 const STEP: f64 = 5e-3;
-/// Rounds that re-time: the solution becomes the coordinate of the next.
-const RETIMINGS: usize = 2;
-/// Rounds that lower limits where the motion passes them between knots.
-const REPAIRS: usize = 6;
+/// How near the optimum the solver goes, as a share of the duration.
+const COARSE_ACCURACY: f64 = 5e-2;
+const ACCURACY: f64 = 5e-4;
+/// Rounds that lower limits where the motion passes them between sites.
+const REPAIRS: usize = 8;
 /// A motion that has to be stretched by less than this is good enough.
 const STRETCH: f64 = 1.0005;
 /// Shares of a limit that a repair leaves: what it aims at, and the least.
@@ -38,9 +40,12 @@ pub(super) struct Passage {
 }
 
 impl Passage {
+    /// No motion was found.
+    pub(super) const NONE: Self = Self { pieces: Vec::new(), stretch: f64::INFINITY };
+
     /// Duration with the stretching.
     pub(super) fn duration(&self) -> f64 {
-        time(&self.pieces) * self.stretch
+        if self.pieces.is_empty() { f64::INFINITY } else { time(&self.pieces) * self.stretch }
     }
 }
 
@@ -49,6 +54,8 @@ impl Passage {
 pub(super) struct Workshop {
     solver: InteriorPoint,
     program: Program,
+    /// Derivatives with respect to w, per site and axis.
+    derivatives: Vec<[f64; 3]>,
     /// Share of each limit that is used, per site, axis and order.
     shares: Vec<[f64; 3]>,
 }
@@ -62,113 +69,106 @@ impl Workshop {
         limits: &PathLimits,
         window: &Window,
     ) -> Result<Passage, TimingError<P::Error>> {
-        let mut coordinate = crude::coordinate(path, joints, limits, window, STEP)?;
-        let axes = N + 1;
-        let mut best: Option<Passage> = None;
-        self.shares.clear();
-        self.shares.resize(coordinate.sites() * axes, [1.0; 3]);
-        // At a held end the speed is the programmed one, and no unknown can change it.
-        for (end, site) in window.ends.into_iter().zip([0, coordinate.sites() - 1]) {
-            if end == End::Cruise {
-                self.shares[site * axes + N][0] = 1.0 + HELD_SLACK;
-            }
-        }
-        for round in 0..RETIMINGS + REPAIRS {
-            self.set_program(path, joints, limits, window, &coordinate)?;
-            let outcome = self.solver.solve(&self.program);
-            if outcome == Outcome::Broken {
-                break;
-            }
-            let pieces = self.pieces(&coordinate, window, limits.speed);
+        let coarse = crude::coordinate(path, joints, limits, window, COARSE_STEP)?;
+        self.set_sites(path, window, &coarse)?;
+        self.set_demands(joints, limits, window, coarse.step);
+        let outcome = self.solver.solve(&self.program, COARSE_ACCURACY);
+        let Some(pieces) = self.pieces(outcome, &coarse, window, limits.speed) else {
+            return Ok(Passage::NONE);
+        };
+        let knots = crude::knots(time(&pieces), STEP);
+        let coordinate = Coordinate::following(&pieces, knots, window.ends, limits.speed);
+        self.set_sites(path, window, &coordinate)?;
+        let mut best = Passage::NONE;
+        for round in 0..=REPAIRS {
+            self.set_demands(joints, limits, window, coordinate.step);
+            let outcome = match round {
+                0 => self.solver.solve(&self.program, ACCURACY),
+                _ => self.solver.solve_again(&self.program, ACCURACY),
+            };
+            let Some(pieces) = self.pieces(outcome, &coordinate, window, limits.speed) else { break };
             let mut check = Check::new(path, joints, limits);
             let mut loads = Vec::with_capacity(2 * pieces.len());
-            let mut load = Load::NONE;
             for piece in &pieces {
-                let halves = check.halves(piece)?;
-                for half in halves {
-                    load.raise(&half);
-                }
-                loads.extend(halves);
+                loads.extend(check.halves(piece)?);
             }
-            let stretch = load.stretch().max(1.0);
-            if std::env::var("TIMING_TRACE").is_ok() {
-                let t: f64 = pieces.iter().map(|p| p.duration).sum();
-                eprintln!(
-                    "  round {round} {outcome:?} its {} knots {} T {t:.5} stretch {stretch:.5} orders {:.4?}",
-                    self.solver.iterations,
-                    coordinate.knots(),
-                    load.orders()
-                );
+            let load = loads.iter().fold(Load::NONE, |most, load| most.raised(load));
+            let passage = Passage { pieces, stretch: load.stretch().max(1.0) };
+            if passage.duration() < best.duration() {
+                best = passage;
             }
-            if std::env::var("TIMING_TRACE").as_deref() == Ok("2") && round == RETIMINGS {
-                for (i, l) in loads.iter().enumerate() {
-                    if l.stretch() > 1.003 {
-                        let piece = &pieces[i / 2];
-                        eprintln!(
-                            "    piece {i} dt {:.5} s {:.6} v {:.4} j {:?} load j {:.3?} {:.3?} a {:.3?}",
-                            piece.duration,
-                            piece.position,
-                            piece.velocity,
-                            [piece.jerk, piece.at(piece.duration / 2.0).jerk, piece.end().jerk],
-                            l.joints[2],
-                            l.path[2],
-                            l.joints[1]
-                        );
-                    }
-                }
-            }
-            if round < RETIMINGS {
-                coordinate = Coordinate::following(&pieces, coordinate.knots(), window.ends, limits.speed);
-            } else {
-                self.tighten(&loads, window, axes);
-            }
-            let passage = Passage { pieces, stretch };
-            if best.as_ref().is_none_or(|best| passage.duration() < best.duration()) {
-                best = Some(passage);
-            }
-            if round >= RETIMINGS && stretch <= STRETCH {
+            if best.stretch <= STRETCH {
                 break;
             }
+            self.tighten(&loads, window, N + 1);
         }
-        Ok(best.unwrap_or(Passage { pieces: Vec::new(), stretch: f64::INFINITY }))
+        Ok(best)
     }
 
-    fn set_program<const N: usize, P: JointPath<N>>(
+    /// Derivatives of all axes at all sites, and whole limits.
+    fn set_sites<const N: usize, P: JointPath<N>>(
         &mut self,
         path: &mut P,
-        joints: &TimingLimits<N>,
-        limits: &PathLimits,
         window: &Window,
         coordinate: &Coordinate,
     ) -> Result<(), TimingError<P::Error>> {
-        let Program { demands, axes, held } = &mut self.program;
-        *axes = N + 1;
-        *held = window.ends.map(|end| end == End::Cruise);
-        demands.clear();
+        self.derivatives.clear();
         for site in 0..coordinate.sites() {
             let w = coordinate.at(site);
             let s = w.s.clamp(window.from, window.to);
             let jet = path.jet(s).map_err(|error| TimingError::Path { position: s, error })?;
-            let shares = &self.shares[site * *axes..(site + 1) * *axes];
             for i in 0..N {
                 let (d1, d2, d3) = (jet.velocity[i], jet.acceleration[i], jet.jerk[i]);
-                let derivatives = [
+                self.derivatives.push([
                     d1 * w.d1,
                     d2 * w.d1 * w.d1 + d1 * w.d2,
                     d3 * w.d1 * w.d1 * w.d1 + 3.0 * d2 * w.d1 * w.d2 + d1 * w.d3,
-                ];
-                let limits = [joints.velocity[i], joints.acceleration[i], joints.jerk[i]];
-                demands.push(Demand::new(derivatives, scaled(limits, shares[i]), coordinate.step));
+                ]);
             }
-            let limits = [limits.speed, limits.acceleration, limits.jerk];
-            let demand = Demand::new([w.d1, w.d2, w.d3], scaled(limits, shares[N]), coordinate.step);
-            demands.push(demand);
+            self.derivatives.push([w.d1, w.d2, w.d3]);
+        }
+        self.shares.clear();
+        self.shares.resize(self.derivatives.len(), [1.0, 1.0, 1.0]);
+        // At a held end the speed is the programmed one, and no unknown can change it.
+        for (end, site) in window.ends.into_iter().zip([0, coordinate.sites() - 1]) {
+            if end == End::Cruise {
+                self.shares[site * (N + 1) + N][0] = 1.0 + HELD_SLACK;
+            }
         }
         Ok(())
     }
 
-    /// The motion in time that the solution stands for: one piece between two knots.
-    fn pieces(&self, coordinate: &Coordinate, window: &Window, speed: f64) -> Vec<TimingPiece> {
+    fn set_demands<const N: usize>(
+        &mut self,
+        joints: &TimingLimits<N>,
+        limits: &PathLimits,
+        window: &Window,
+        step: f64,
+    ) {
+        let Program { demands, axes, held } = &mut self.program;
+        *axes = N + 1;
+        *held = window.ends.map(|end| end == End::Cruise);
+        demands.clear();
+        for (index, (derivatives, shares)) in self.derivatives.iter().zip(&self.shares).enumerate() {
+            let limits = match index % (N + 1) {
+                i if i < N => [joints.velocity[i], joints.acceleration[i], joints.jerk[i]],
+                _ => [limits.speed, limits.acceleration, limits.jerk],
+            };
+            demands.push(Demand::new(*derivatives, scaled(limits, *shares), step));
+        }
+    }
+
+    /// The motion in time that the solution stands for: one piece between two knots. None where it makes no sense.
+    fn pieces(
+        &self,
+        outcome: Outcome,
+        coordinate: &Coordinate,
+        window: &Window,
+        speed: f64,
+    ) -> Option<Vec<TimingPiece>> {
+        if outcome == Outcome::Broken {
+            return None;
+        }
         let controls = self.solver.controls();
         let step = coordinate.step;
         let last = coordinate.knots() - 1;
@@ -197,7 +197,7 @@ impl Workshop {
                 let end = state(knot + 1);
                 let piece = TimingPiece::joining(&start, &end, step * duration(&controls[knot..knot + 4]));
                 start = end;
-                piece
+                (piece.duration > 0.0 && piece.duration.is_finite()).then_some(piece)
             })
             .collect()
     }
