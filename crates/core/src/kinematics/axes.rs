@@ -6,6 +6,15 @@ use nalgebra::SMatrix;
 use super::JointJet;
 use crate::geometry::{Pose, PoseJet, Vector3};
 
+/// What a joint does along its axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum JointKind {
+    /// Turns about it.
+    Revolute,
+    /// Slides along it.
+    Prismatic,
+}
+
 /// A joint's axis in the base frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointAxis {
@@ -13,8 +22,8 @@ pub struct JointAxis {
     pub direction: Vector3,
     /// A point on the axis, in metres.
     pub point: Vector3,
-    /// Whether the joint slides along its axis; it turns about it otherwise.
-    pub prismatic: bool,
+    /// Revolute or prismatic.
+    pub kind: JointKind,
 }
 
 /// The geometric Jacobian, 6 × N: linear rows first (metres per joint unit), then angular, of the flange in the base
@@ -64,18 +73,19 @@ impl LinkMotion {
     fn behind(mut self, axis: &JointAxis, [d1, d2, d3]: [f64; 3]) -> Self {
         let z = axis.direction;
         let [dz, ddz] = self.turn(&z);
-        let along = if axis.prismatic {
-            &mut self.origin
-        } else {
-            let p = axis.point;
-            let [dp, ddp, _] = self.carry(&p);
-            let moment = p.cross(&z);
-            let d_moment = dp.cross(&z) + p.cross(&dz);
-            let dd_moment = ddp.cross(&z) + dp.cross(&dz) * 2.0 + p.cross(&ddz);
-            self.origin[0] += moment * d1;
-            self.origin[1] += moment * d2 + d_moment * d1;
-            self.origin[2] += moment * d3 + d_moment * (2.0 * d2) + dd_moment * d1;
-            &mut self.angular
+        let along = match axis.kind {
+            JointKind::Prismatic => &mut self.origin,
+            JointKind::Revolute => {
+                let p = axis.point;
+                let [dp, ddp, _] = self.carry(&p);
+                let moment = p.cross(&z);
+                let d_moment = dp.cross(&z) + p.cross(&dz);
+                let dd_moment = ddp.cross(&z) + dp.cross(&dz) * 2.0 + p.cross(&ddz);
+                self.origin[0] += moment * d1;
+                self.origin[1] += moment * d2 + d_moment * d1;
+                self.origin[2] += moment * d3 + d_moment * (2.0 * d2) + dd_moment * d1;
+                &mut self.angular
+            }
         };
         along[0] += z * d1;
         along[1] += z * d2 + dz * d1;
@@ -95,8 +105,10 @@ impl<const N: usize> JointAxes<N> {
         let mut jacobian = Jacobian::<N>::zeros();
         for (axis, mut column) in self.axes.iter().zip(jacobian.column_iter_mut()) {
             let z = axis.direction;
-            let (linear, angular) =
-                if axis.prismatic { (z, ZERO) } else { (z.cross(&(flange - axis.point)), z) };
+            let (linear, angular) = match axis.kind {
+                JointKind::Revolute => (z.cross(&(flange - axis.point)), z),
+                JointKind::Prismatic => (z, ZERO),
+            };
             column.fixed_rows_mut::<3>(0).copy_from(&linear);
             column.fixed_rows_mut::<3>(3).copy_from(&angular);
         }
@@ -118,11 +130,12 @@ impl<const N: usize> JointAxes<N> {
         for ((axis, (dz, dp)), mut column) in
             self.axes.iter().zip(&axis_motion).zip(derivative.column_iter_mut())
         {
-            let (linear, angular) = if axis.prismatic {
-                (*dz, ZERO)
-            } else {
-                let arm = flange - axis.point;
-                (dz.cross(&arm) + axis.direction.cross(&(flange_velocity - dp)), *dz)
+            let (linear, angular) = match axis.kind {
+                JointKind::Revolute => {
+                    let arm = flange - axis.point;
+                    (dz.cross(&arm) + axis.direction.cross(&(flange_velocity - dp)), *dz)
+                }
+                JointKind::Prismatic => (*dz, ZERO),
             };
             column.fixed_rows_mut::<3>(0).copy_from(&linear);
             column.fixed_rows_mut::<3>(3).copy_from(&angular);

@@ -18,6 +18,9 @@ pub(super) fn inverse_jet<const N: usize>(
     motion: &PoseJet,
     q: &[f64; N],
 ) -> Result<JointJet<N>, InverseError> {
+    if !(motion.is_finite() && q.iter().sum::<f64>().is_finite()) {
+        return Err(InverseError::NotFinite);
+    }
     let demanded = [0, 1, 2].map(|order| stacked(&motion.linear[order], &motion.angular[order]));
     if demanded.iter().all(|twist| *twist == Vector6::zeros()) {
         return Ok(JointJet::at_rest(*q));

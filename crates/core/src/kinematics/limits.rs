@@ -2,6 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
+use super::branches::{Branches, nearest};
 use super::{InverseError, JointKind, ModelError};
 use crate::math::float::{ceil, floor, round};
 
@@ -78,6 +79,24 @@ impl<const N: usize> JointLimits<N> {
         Some(turned)
     }
 
+    /// Of several joint positions those within the limits, in the turns nearest to the reference; where there is none,
+    /// what keeps the one nearest to it outside.
+    pub(super) fn branches_within<const MAX: usize>(
+        &self,
+        all: &[[f64; N]],
+        reference: &[f64; N],
+        kinds: &[JointKind; N],
+    ) -> Result<Branches<[f64; N], MAX>, InverseError> {
+        let mut kept = Branches::none(*reference);
+        all.iter().filter_map(|q| self.turned_within(q, reference, kinds)).for_each(|q| kept.push(q));
+        if kept.as_slice().is_empty() {
+            let turned = |q: &[f64; N]| core::array::from_fn(|i| nearest_turn(q[i], reference[i]));
+            let q = nearest(all.iter().map(turned), reference).unwrap_or(*reference);
+            return Err(self.worst_violation(&q, kinds));
+        }
+        Ok(kept)
+    }
+
     /// Of joint positions that are not within the limits in any turn: the joint furthest outside.
     #[cold]
     pub(super) fn worst_violation(&self, q: &[f64; N], kinds: &[JointKind; N]) -> InverseError {
@@ -104,12 +123,6 @@ impl<const N: usize> JointLimits<N> {
         };
         q.iter().enumerate().find_map(outside)
     }
-}
-
-/// Σ (aᵢ − bᵢ)².
-#[inline]
-pub(super) fn distance_squared<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
 /// The angle equal to `angle` modulo full turns, within (min, max), that lies nearest to `reference`.

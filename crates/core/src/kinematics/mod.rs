@@ -7,13 +7,27 @@
 //! | model | inverse |
 //! |---|---|
 //! | [`SphericalWristArm`] | closed form, up to 8 branches by name |
+//! | [`ThreeParallelArm`] | closed form, up to 8 branches |
 //! | [`ScaraArm`] | closed form, both elbows |
 //! | [`SerialChain`] | numeric: damped Newton, then Taylor steps |
 //! | [`SixAxisArm`] | a chain, with the closed form where its structure has one, polished where it has one nearly |
+//!
+//! ```
+//! use seamline::kinematics::{Kinematics, models};
+//!
+//! let arm = models::ar2010();
+//! let q = [0.1, 0.2, -0.3, 0.4, -0.5, 0.6];
+//! let base_from_flange = arm.forward(&q);
+//! let found = arm.inverse_nearest(&base_from_flange, &q).expect("q itself reaches it");
+//! assert!(found.iter().zip(q).all(|(found, q)| (found - q).abs() < 1e-12));
+//! let branches = arm.inverse(&base_from_flange, &q).expect("q is one of them");
+//! assert_eq!(branches.as_slice().len(), 8);
+//! ```
 
 mod axes;
 mod branches;
 mod chain;
+mod closed_form;
 mod differential;
 mod error;
 mod limits;
@@ -22,22 +36,21 @@ mod scara;
 mod singular_values;
 mod six_axis;
 mod spherical_wrist;
-mod two_link;
+mod three_parallel;
 
-pub use axes::{Jacobian, JointAxes, JointAxis};
+pub use axes::{Jacobian, JointAxes, JointAxis, JointKind};
 pub use branches::Branches;
-pub use chain::{
-    DhConvention, DhRow, JointDescription, JointKind, NumericSolution, SerialChain, SolverSettings,
-};
+pub use chain::{DhConvention, DhRow, JointDescription, NumericSolution, SerialChain, SolverSettings};
 pub use error::{InverseError, ModelError, Singularity};
 pub use limits::JointLimits;
 pub use scara::{Handedness, ScaraArm, ScaraGeometry, ScaraSolution, ScaraSolutions};
 pub use singular_values::SingularValues;
-pub use six_axis::{InverseMethod, SixAxisArm};
+pub use six_axis::{ClosedForm, InverseMethod, SixAxisArm};
 pub use spherical_wrist::{
     Configuration, Elbow, OpwParameters, Posture, Shoulder, SingularityDistances, Solution, Solutions,
     SphericalWristArm, SphericalWristGeometry, Wrist,
 };
+pub use three_parallel::ThreeParallelArm;
 
 use crate::geometry::{Pose, PoseJet};
 use crate::math::taylor::Taylor;

@@ -2,9 +2,9 @@
 //!
 //! q₁ and q₂ turn about the shoulder frame's z axis, q₃ slides along it and q₄ turns about it again.
 
-use super::branches::Branches;
-use super::limits::{distance_squared, principal};
-use super::two_link::{Bend, STILL, TwoLink};
+use super::branches::{Branches, nearest};
+use super::closed_form::{Bend, STILL, TwoLink};
+use super::limits::principal;
 use super::{InverseError, JointAxes, JointAxis, JointJet, JointKind, JointLimits, Kinematics, ModelError};
 use crate::geometry::{Pose, PoseJet, Vector3, is_finite};
 use crate::math::float::{atan2, hypot, sin, sin_cos};
@@ -137,32 +137,6 @@ impl ScaraArm {
         Ok(found)
     }
 
-    /// Both branches within the joint limits, each joint in the turn nearest to `reference`.
-    ///
-    /// # Errors
-    /// As [`ScaraArm::inverse`], and [`InverseError::PositionLimit`] where no branch is within the limits.
-    pub fn inverse_within_limits(
-        &self,
-        base_from_flange: &Pose,
-        reference: &[f64; 4],
-    ) -> Result<ScaraSolutions, InverseError> {
-        let all = self.inverse(base_from_flange, reference)?;
-        let mut kept = ScaraSolutions::none(ScaraSolution { q: *reference, handedness: Handedness::Right });
-        let mut outside = None;
-        for solution in all.as_slice() {
-            match self.limits.turned_within(&solution.q, reference, &KINDS) {
-                Some(q) => kept.push(ScaraSolution { q, ..*solution }),
-                None => outside = outside.or(Some(solution)),
-            }
-        }
-        match outside {
-            Some(solution) if kept.as_slice().is_empty() => {
-                Err(self.limits.worst_violation(&solution.q, &KINDS))
-            }
-            _ => Ok(kept),
-        }
-    }
-
     /// Distance from the elbow's singularity at joint positions `q`: |sin q₂|, zero stretched and folded.
     #[must_use]
     pub fn elbow_distance(&self, q: &[f64; 4]) -> f64 {
@@ -192,7 +166,7 @@ impl Kinematics<4> for ScaraArm {
         let axis = |point: Vector3, kind| JointAxis {
             direction,
             point: (base_from_shoulder * nalgebra::Point3::from(point)).coords,
-            prismatic: kind == JointKind::Prismatic,
+            kind,
         };
         let points = [Vector3::zeros(), elbow, last, last];
         JointAxes {
@@ -202,11 +176,9 @@ impl Kinematics<4> for ScaraArm {
     }
 
     fn inverse_nearest(&self, base_from_flange: &Pose, seed: &[f64; 4]) -> Result<[f64; 4], InverseError> {
-        let within = self.inverse_within_limits(base_from_flange, seed)?;
-        let distance = |solution: &ScaraSolution| distance_squared(&solution.q, seed);
-        let nearest = within.as_slice().iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let within = self.inverse_branches(base_from_flange, seed)?;
         // There is at least one: none within the limits is an error above.
-        Ok(nearest.map_or(*seed, |solution| solution.q))
+        Ok(nearest(within.as_slice().iter().copied(), seed).unwrap_or(*seed))
     }
 
     fn inverse_branches(
@@ -214,13 +186,14 @@ impl Kinematics<4> for ScaraArm {
         base_from_flange: &Pose,
         reference: &[f64; 4],
     ) -> Result<Branches<[f64; 4], 8>, InverseError> {
-        let mut found = Branches::none(*reference);
-        let within = self.inverse_within_limits(base_from_flange, reference)?;
-        within.as_slice().iter().for_each(|solution| found.push(solution.q));
-        Ok(found)
+        let all = self.inverse(base_from_flange, reference)?;
+        self.limits.branches_within(all.map(|solution| solution.q).as_slice(), reference, &KINDS)
     }
 
     fn joint_jet(&self, base_from_flange: &PoseJet, q: &[f64; 4]) -> Result<JointJet<4>, InverseError> {
+        if !(base_from_flange.is_finite() && q.iter().sum::<f64>().is_finite()) {
+            return Err(InverseError::NotFinite);
+        }
         let jet = base_from_flange.seen_from(&self.shoulder_from_base).attached(&self.flange_from_last);
         let tilting = jet.angular.iter().fold(0.0, |most: f64, w| most.max(hypot(w.x, w.y)));
         let turning = jet.angular.iter().fold(0.0, |most: f64, w| most.max(w.norm()));

@@ -8,7 +8,7 @@ use seamline::kinematics::{
     Jacobian, JointAxes, JointJet, JointLimits, Kinematics, SerialChain, SingularValues, models,
 };
 
-use crate::support::Random;
+use crate::support::{Random, joint_error};
 
 /// Central differences of fourth order.
 fn difference<T>(f: impl Fn(f64) -> T, h: f64) -> T
@@ -152,6 +152,51 @@ fn closed_form_joint_derivatives_invert_the_forward_ones() {
             q[1] = 1.0;
         }
         check_round_trip(&scara, &random_joint_jet(&mut random, q), 1e-10);
+    }
+}
+
+/// At a distance δ from each singularity, down to 1e-6, the k-th joint derivatives come back to 1e-14/δᵏ: what rounding
+/// alone makes of them.
+#[test]
+fn joint_derivatives_beside_singularities() {
+    let arm = models::ar2010();
+    let g = arm.geometry();
+    let stretched = FRAC_PI_2 + g.elbow_offset.atan2(g.forearm);
+    let q = [0.3, 0.4, 0.5, 0.6, -0.7, 0.8];
+    // Joint 2 that brings the wrist centre onto axis 1, by bisection.
+    let radius = |q2: f64| {
+        let centre = arm.axes(&moved(&q, 1, q2 - q[1])).axes[4].point;
+        centre.x * q[0].cos() + centre.y * q[0].sin()
+    };
+    let (mut low, mut high) = (-2.5, 0.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if radius(middle) < 0.0 { low = middle } else { high = middle }
+    }
+    let mut random = Random::new(29);
+    for exponent in 1..=6 {
+        let delta = 10.0_f64.powi(-exponent);
+        for (axis, singular) in [(4, 0.0), (2, stretched), (1, low)] {
+            for sign in [-1.0, 1.0] {
+                let mut position = q;
+                position[axis] = singular + sign * delta;
+                let joints = random_joint_jet(&mut random, position);
+                let motion = arm.axes(&position).forward_jet(&joints);
+                let back = arm.joint_jet(&motion, &position).unwrap();
+                for (k, (got, expected)) in [
+                    (back.velocity, joints.velocity),
+                    (back.acceleration, joints.acceleration),
+                    (back.jerk, joints.jerk),
+                ]
+                .iter()
+                .enumerate()
+                {
+                    let error = joint_error(got, expected);
+                    let bound = 1e-14 / delta.powi(k as i32 + 1);
+                    assert!(error < bound, "joint {axis} at {delta:e}, order {}: {error:e}", k + 1);
+                }
+            }
+        }
     }
 }
 

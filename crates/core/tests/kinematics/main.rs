@@ -6,8 +6,10 @@
 mod chain;
 mod differential;
 mod golden;
+mod identity;
 mod joint_jet;
 mod scara;
 mod spherical_wrist;
 mod structure;
 mod support;
+mod three_parallel;

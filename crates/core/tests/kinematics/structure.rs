@@ -1,8 +1,8 @@
 //! A chain shows its spherical wrist whatever its frames, and a calibrated arm is met exactly.
 
-use seamline::geometry::Pose;
+use seamline::geometry::{Pose, Vector3};
 use seamline::kinematics::{
-    InverseMethod, JointAxes, JointLimits, Kinematics, OpwParameters, SerialChain, SixAxisArm,
+    ClosedForm, InverseMethod, JointAxes, JointLimits, Kinematics, OpwParameters, SerialChain, SixAxisArm,
     SphericalWristArm, models,
 };
 
@@ -68,9 +68,30 @@ fn postures_keep_their_names() {
 #[test]
 fn other_arms_are_not_taken_for_one() {
     assert_eq!(models::ur5e().spherical_wrist(1e-3), None);
-    assert_eq!(SixAxisArm::from_chain(models::ur5e()).method(), &InverseMethod::Numeric);
+    assert!(matches!(
+        SixAxisArm::from_chain(models::ur5e()).method(),
+        InverseMethod::Exact(ClosedForm::ThreeParallel(_))
+    ));
+    assert_eq!(disguised(&models::ar2010(), &mut Random::new(56), true).three_parallel(1e-3), None);
+    let mut skew = models::ur5e().axes(&[0.5; 6]);
+    skew.axes[3].direction = Vector3::new(0.6, 0.0, 0.8);
+    let chain = SerialChain::from_axes(&skew, JointLimits::unlimited()).unwrap();
+    assert_eq!(SixAxisArm::from_chain(chain).method(), &InverseMethod::Numeric);
     let chain = disguised(&models::ar2010(), &mut Random::new(53), true);
-    assert!(matches!(SixAxisArm::from_chain(chain).method(), InverseMethod::ClosedForm(_)));
+    assert!(matches!(
+        SixAxisArm::from_chain(chain).method(),
+        InverseMethod::Exact(ClosedForm::SphericalWrist(_))
+    ));
+}
+
+#[test]
+fn a_named_arm_stays_itself() {
+    let arm = SixAxisArm::from(models::ar2010());
+    assert_eq!(arm.method(), &InverseMethod::Exact(ClosedForm::SphericalWrist(models::ar2010())));
+    let q = [0.1, 0.2, 0.3, 0.4, -0.5, 0.6];
+    assert!(pose_error(&arm.chain().forward(&q), &arm.forward(&q)).0 < 1e-14);
+    let nearest = arm.inverse_nearest(&arm.forward(&q), &q).unwrap();
+    assert_eq!(Ok(nearest), models::ar2010().inverse_nearest(&arm.forward(&q), &q));
 }
 
 /// 20 calibrations (axes off by up to 0.5 mm and 1 mrad), 100 poses each: every branch of the nominal arm is met on the

@@ -1,16 +1,7 @@
 //! How a chain is given: joint by joint, or by a table of Denavit–Hartenberg parameters.
 
 use crate::geometry::{Pose, Rotation, Vector3};
-use crate::kinematics::ModelError;
-
-/// What a joint does along its axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum JointKind {
-    /// Turns about it.
-    Revolute,
-    /// Slides along it.
-    Prismatic,
-}
+use crate::kinematics::{JointKind, ModelError};
 
 /// A joint as URDF describes it: where its frame stands on the link before, and its axis in that frame. Fixed joints
 /// in between multiply into the pose.
@@ -28,11 +19,15 @@ impl JointDescription {
     /// The rotation that takes z onto the joint's axis.
     pub(super) fn z_onto_axis(&self, axis: usize) -> Result<Pose, ModelError> {
         let direction = self.axis.try_normalize(0.0).ok_or(ModelError::Axis { axis })?;
-        // Exactly opposite, any half turn across will do.
-        let turn = Rotation::rotation_between(&Vector3::z(), &direction)
-            .unwrap_or_else(|| Rotation::from_axis_angle(&Vector3::x_axis(), core::f64::consts::PI));
-        Ok(Pose::from_parts(Vector3::zeros().into(), turn))
+        Ok(Pose::from_parts(Vector3::zeros().into(), z_onto(&direction)))
     }
+}
+
+/// A rotation that takes z onto a unit vector.
+pub(super) fn z_onto(direction: &Vector3) -> Rotation {
+    // Exactly opposite, any half turn across will do.
+    Rotation::rotation_between(&Vector3::z(), direction)
+        .unwrap_or_else(|| Rotation::from_axis_angle(&Vector3::x_axis(), core::f64::consts::PI))
 }
 
 /// Which of the two conventions a table follows.
@@ -60,7 +55,7 @@ pub struct DhRow {
 }
 
 /// The joint frames that a table describes, each on the one before, and the flange behind the last.
-pub(in crate::kinematics) fn from_dh<const N: usize>(
+pub(crate) fn from_dh<const N: usize>(
     rows: &[DhRow; N],
     convention: DhConvention,
 ) -> ([(Pose, JointKind); N], Pose) {

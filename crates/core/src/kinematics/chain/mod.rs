@@ -1,20 +1,19 @@
 //! General serial chains of turning and sliding joints.
 //!
-//! Forward kinematics goes from link to link; the inverse is numeric ([`solver`]), or in closed form where
-//! [`structure`] finds a spherical wrist.
+//! Forward kinematics goes from link to link; the inverse is numeric, or in closed form where the structure allows it.
 
 pub(super) mod description;
 mod solver;
 mod structure;
 
-pub use description::{DhConvention, DhRow, JointDescription, JointKind};
+pub use description::{DhConvention, DhRow, JointDescription};
 pub use solver::{NumericSolution, SolverSettings};
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::differential::inverse_jet;
-use super::{InverseError, JointAxes, JointAxis, JointJet, JointLimits, Kinematics, ModelError};
-use crate::geometry::{Pose, PoseJet, Rotation, Vector3};
+use super::{InverseError, JointAxes, JointAxis, JointJet, JointKind, JointLimits, Kinematics, ModelError};
+use crate::geometry::{Pose, PoseJet, Vector3};
 use crate::math::float::sin_cos;
 
 /// A serial chain of N joints.
@@ -94,15 +93,23 @@ impl<const N: usize> SerialChain<N> {
     /// # Errors
     /// [`ModelError`] for a number that is not finite or an axis without direction.
     pub fn from_axes(at_zero: &JointAxes<N>, limits: JointLimits<N>) -> Result<Self, ModelError> {
-        let mut last = Vector3::zeros();
+        let mut unit = *at_zero;
+        for (index, axis) in unit.axes.iter_mut().enumerate() {
+            axis.direction = axis.direction.try_normalize(0.0).ok_or(ModelError::Axis { axis: index })?;
+        }
+        Self::of_unit_axes(&unit, limits).checked()
+    }
+
+    /// A chain from its axes at zero, whose directions are of unit length.
+    pub(super) fn of_unit_axes(at_zero: &JointAxes<N>, limits: JointLimits<N>) -> Self {
+        let mut base_from_last = Pose::identity();
         let joints = at_zero.axes.map(|axis| {
-            let parent_from_joint = Pose::from_parts((axis.point - last).into(), Rotation::identity());
-            last = axis.point;
-            let kind = if axis.prismatic { JointKind::Prismatic } else { JointKind::Revolute };
-            JointDescription { parent_from_joint, axis: axis.direction, kind }
+            let base_from_joint = Pose::from_parts(axis.point.into(), description::z_onto(&axis.direction));
+            let parent_from_joint = base_from_last.inverse() * base_from_joint;
+            base_from_last = base_from_joint;
+            (parent_from_joint, axis.kind)
         });
-        let base_from_last = Pose::from_parts(last.into(), Rotation::identity());
-        Self::try_new(&joints, &(base_from_last.inverse() * at_zero.base_from_flange), limits)
+        Self::of_z_joints(&joints, &(base_from_last.inverse() * at_zero.base_from_flange), limits)
     }
 
     /// A chain from a table of Denavit–Hartenberg parameters.
@@ -173,22 +180,22 @@ impl<const N: usize> Kinematics<N> for SerialChain<N> {
 
     #[inline]
     fn axes(&self, q: &[f64; N]) -> JointAxes<N> {
-        let nothing = JointAxis { direction: Vector3::zeros(), point: Vector3::zeros(), prismatic: false };
-        let mut axes = [nothing; N];
+        let mut axes = self.links.map(|Link { kind, .. }| JointAxis {
+            direction: Vector3::zeros(),
+            point: Vector3::zeros(),
+            kind,
+        });
         let flange = self.walk(q, |i, joint| {
-            axes[i] = JointAxis {
-                direction: joint.rotation.column(2).into_owned(),
-                point: joint.position,
-                prismatic: self.links[i].kind == JointKind::Prismatic,
-            };
+            axes[i].direction = joint.rotation.column(2).into_owned();
+            axes[i].point = joint.position;
         });
         JointAxes { axes, base_from_flange: flange.pose() }
     }
 
-    /// The numeric inverse from the seed, and from other starts where that fails ([`SerialChain::solve`] with the
-    /// default settings): the solution that the seed leads to, usually the nearest.
+    /// The numeric inverse from the seed, and from other starts where that fails: [`SerialChain::solve`] with
+    /// [`SolverSettings::TO_ROUNDING`]. It is the solution that the seed leads to, usually the nearest.
     fn inverse_nearest(&self, base_from_flange: &Pose, seed: &[f64; N]) -> Result<[f64; N], InverseError> {
-        Ok(self.solve(base_from_flange, seed, &SolverSettings::default())?.q)
+        Ok(self.solve(base_from_flange, seed, &SolverSettings::TO_ROUNDING)?.q)
     }
 
     fn joint_jet(&self, base_from_flange: &PoseJet, q: &[f64; N]) -> Result<JointJet<N>, InverseError> {

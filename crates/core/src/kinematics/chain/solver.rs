@@ -6,6 +6,8 @@
 //! fourth order: a seed within 0.05 rad needs two steps. A start that does not get anywhere is given up for another one,
 //! taken from a fixed sequence that fills the joint range evenly: the same question has the same answer on every run.
 
+use core::f64::consts::{PI, TAU};
+
 use nalgebra::{SMatrix, Vector6};
 
 use super::SerialChain;
@@ -25,6 +27,13 @@ pub struct SolverSettings {
     pub iterations_per_start: usize,
     /// Starts: the seed, then others.
     pub starts: usize,
+}
+
+impl SolverSettings {
+    /// 1e-12 m, 1e-12 rad: what a control cycle needs, whose joints would show every change of a residual as
+    /// acceleration.
+    pub const TO_ROUNDING: Self =
+        Self { position_tolerance: 1e-12, rotation_tolerance: 1e-12, iterations_per_start: 50, starts: 40 };
 }
 
 impl Default for SolverSettings {
@@ -59,8 +68,31 @@ const LONGEST_STEP: f64 = 1.0;
 const TAYLOR_STEP: f64 = 0.35;
 /// … and the twist is shorter than this (metres and radians together).
 const TAYLOR_TWIST: f64 = 1.0;
+/// Nearer than this a step must bring the flange nearer still, or is taken back and tried with more damping.
+const CAUTIOUS: f64 = 0.3;
+/// So many times more.
+const MORE_CAUTION: f64 = 30.0;
+/// Damping, of the Jacobian's squared norm, above the rounding of J·Jᵀ.
+const ROUNDING: f64 = 1e-14;
 /// A start is given up if this many iterations have not halved the error.
 const PATIENCE: usize = 8;
+
+/// A place on the way.
+struct Place<const N: usize> {
+    q: [f64; N],
+    axes: JointAxes<N>,
+    /// What is left to go.
+    twist: Vector6<f64>,
+}
+
+impl<const N: usize> Place<N> {
+    #[inline]
+    fn at(chain: &SerialChain<N>, q: [f64; N], target: &Pose) -> Self {
+        let axes = chain.axes(&q);
+        let twist = twist_to(&axes.base_from_flange, target);
+        Self { q, axes, twist }
+    }
+}
 
 /// Where one start has got to.
 struct Descent<const N: usize> {
@@ -78,8 +110,8 @@ impl<const N: usize> SerialChain<N> {
     /// [`InverseError::NotConverged`]; [`InverseError::PositionLimit`] where solutions were found, all of them outside
     /// the limits; [`InverseError::NotFinite`].
     ///
-    /// Cost: at most `starts · iterations_per_start` iterations, each of one pass through the chain and one N × N
-    /// factorization.
+    /// Cost: at most `starts · iterations_per_start` iterations, each of one pass through the chain and one or two 6 × 6
+    /// factorizations.
     pub fn solve(
         &self,
         base_from_flange: &Pose,
@@ -127,29 +159,30 @@ impl<const N: usize> SerialChain<N> {
 
     /// From one start as far as it leads.
     fn descend(&self, target: &Pose, from: [f64; N], settings: &SolverSettings) -> Descent<N> {
-        let mut q = from;
-        let mut axes = self.axes(&q);
-        let mut twist = twist_to(&axes.base_from_flange, target);
-        let (mut milestone, mut since_milestone) = (twist.norm(), 0);
-        let mut iterations = 0;
+        let mut here = Place::at(self, from, target);
+        let (mut milestone, mut since_milestone) = (here.twist.norm(), 0);
+        let (mut iterations, mut caution) = (0, 1.0);
+        // At most `iterations_per_start` rounds.
         loop {
-            let position_residual = twist.fixed_rows::<3>(0).norm();
-            let rotation_residual = twist.fixed_rows::<3>(3).norm();
+            let position_residual = here.twist.fixed_rows::<3>(0).norm();
+            let rotation_residual = here.twist.fixed_rows::<3>(3).norm();
             let converged = position_residual <= settings.position_tolerance
                 && rotation_residual <= settings.rotation_tolerance;
             if converged || iterations == settings.iterations_per_start || since_milestone == PATIENCE {
-                return Descent { q, iterations, position_residual, rotation_residual, converged };
+                return Descent { q: here.q, iterations, position_residual, rotation_residual, converged };
             }
-            let step = step(&axes, &twist);
-            for (position, step) in q.iter_mut().zip(step) {
-                *position += step;
-            }
+            let step = step(&here.axes, &here.twist, caution);
+            let there = Place::at(self, core::array::from_fn(|i| here.q[i] + step[i]), target);
             iterations += 1;
-            axes = self.axes(&q);
-            twist = twist_to(&axes.base_from_flange, target);
             since_milestone += 1;
-            if twist.norm() < 0.5 * milestone {
-                (milestone, since_milestone) = (twist.norm(), 0);
+            let (before, after) = (here.twist.norm(), there.twist.norm());
+            if after >= before && before < CAUTIOUS {
+                caution *= MORE_CAUTION;
+                continue;
+            }
+            (here, caution) = (there, 1.0);
+            if after < 0.5 * milestone {
+                (milestone, since_milestone) = (after, 0);
             }
         }
     }
@@ -166,7 +199,9 @@ impl<const N: usize> SerialChain<N> {
             increment /= ratio;
             let x = 0.5 + k as f64 * increment;
             let (min, max) = self.limits.position()[axis];
-            let (min, max) = (min.max(-core::f64::consts::PI), max.min(core::f64::consts::PI));
+            // Of a wider range, one turn about the place nearest to zero.
+            let middle = 0.0_f64.max(min + PI).min(max - PI);
+            let (min, max) = if max - min > TAU { (middle - PI, middle + PI) } else { (min, max) };
             min + (max - min) * (x - floor(x))
         })
     }
@@ -211,9 +246,10 @@ impl<const N: usize> DampedInverse<N> {
 
 /// The next step of the joints towards a flange displaced by `twist`.
 #[inline]
-fn step<const N: usize>(axes: &JointAxes<N>, twist: &Vector6<f64>) -> [f64; N] {
+fn step<const N: usize>(axes: &JointAxes<N>, twist: &Vector6<f64>, caution: f64) -> [f64; N] {
     let jacobian = axes.jacobian();
     if twist.norm() < TAYLOR_TWIST
+        && caution == 1.0
         && let Some(inverse) = DampedInverse::new(jacobian, 0.0)
     {
         let velocity = inverse.solve(twist);
@@ -221,10 +257,9 @@ fn step<const N: usize>(axes: &JointAxes<N>, twist: &Vector6<f64>) -> [f64; N] {
             return taylor_step(axes, velocity, &inverse);
         }
     }
-    // Not positive definite in spite of the damping: a twist so small that the damping is lost to rounding.
-    let Some(inverse) = DampedInverse::new(jacobian, DAMPING * twist.norm_squared()) else {
-        return [0.0; N];
-    };
+    let damping = DAMPING * caution * twist.norm_squared() + ROUNDING * jacobian.norm_squared();
+    // Positive definite: the damping is above the rounding.
+    let Some(inverse) = DampedInverse::new(jacobian, damping) else { return [0.0; N] };
     let step = inverse.solve(twist);
     let scale = (LONGEST_STEP / largest(&step)).min(1.0);
     step.map(|s| s * scale)

@@ -1,18 +1,18 @@
 //! Exact joint derivatives: the closed-form inverse, on the branch of given joint positions, in Taylor arithmetic.
 //!
-//! Values come from the joint positions, derivatives from the flange's motion. Where a root vanishes the branch
-//! meets another and has no derivatives, unless what it depends on stands still: then the joint does too.
+//! Values come from the joint positions, derivatives from the flange's motion: beside a singularity the joints are known
+//! better than the rounded pose says. Where a root vanishes the branch meets another and has no derivatives, unless the
+//! motion stands still there or passes straight through (an arm that moves in its own plane): then it has.
 
 use super::SphericalWristArm;
 use crate::geometry::{PoseJet, Vector3};
-use crate::kinematics::two_link::STILL;
+use crate::kinematics::closed_form::{Polar, STILL};
 use crate::kinematics::{InverseError, JointJet, Singularity};
-use crate::math::float::{cos, sin, sqrt};
+use crate::math::float::{sin_cos, sqrt};
 use crate::math::taylor::Taylor;
 
-/// A measure of distance below this is zero but for rounding.
-const VANISHING: f64 = 1e-12;
-/// A root of what is itself known to rounding, below this.
+/// With a lateral offset the wrist centre's radial coordinate is a root of what is itself known to rounding: it is zero
+/// but for that below this, per root of offset and reach.
 const VANISHING_ROOT: f64 = 1e-7;
 
 /// The wrist's motion in the shoulder frame.
@@ -34,6 +34,9 @@ struct QuaternionSeries {
 
 impl SphericalWristArm {
     pub(super) fn jet(&self, base_from_flange: &PoseJet, q: &[f64; 6]) -> Result<JointJet<6>, InverseError> {
+        if !(base_from_flange.is_finite() && q.iter().sum::<f64>().is_finite()) {
+            return Err(InverseError::NotFinite);
+        }
         let theta = self.thetas(q);
         let motion = self.wrist_motion(base_from_flange);
         let (theta1, out) = self.shoulder_series(&motion, &theta)?;
@@ -67,28 +70,32 @@ impl SphericalWristArm {
         motion: &WristMotion,
         theta: &[f64; 6],
     ) -> Result<(Taylor, Taylor), InverseError> {
-        let g = &self.geometry;
-        let reach = self.links.reach();
+        let (reach, offset) = (self.links.reach(), self.geometry.lateral_offset);
         let [x, y, _] = motion.centre;
-        let b = g.lateral_offset;
         let value = self.wrist_radius(theta);
-        let vanishing = (VANISHING * reach).max(VANISHING_ROOT * sqrt(b.abs() * reach));
-        if value.abs() <= vanishing {
-            if x.variation().max(y.variation()) <= STILL * reach * motion.variation {
-                return Ok((Taylor::constant(theta[0]), Taylor::constant(value - g.shoulder_offset)));
-            }
-            return Err(InverseError::Singular { singularity: Singularity::Shoulder, distance: value.abs() });
-        }
-        let radial = (x.squared() + y.squared()).sqrt_from(value);
-        let theta1 = Taylor::angle(x * radial + y * b, y * radial + x * -b, theta[0]);
-        Ok((theta1, radial + -g.shoulder_offset))
+        let singular = InverseError::Singular { singularity: Singularity::Shoulder, distance: value.abs() };
+        let (theta1, radial) = if offset == 0.0 {
+            let polar = Polar::of([x, y], value, theta[0], reach, motion.variation).ok_or(singular)?;
+            (polar.angle, polar.radius)
+        } else if value.abs() > VANISHING_ROOT * sqrt(offset.abs() * reach) {
+            let (sin1, cos1) = sin_cos(theta[0]);
+            let x = x.with_value(cos1 * value - sin1 * offset);
+            let y = y.with_value(sin1 * value + cos1 * offset);
+            let radial = (x.squared() + y.squared()).sqrt_from(value);
+            (Taylor::angle(x * radial + y * offset, y * radial + x * -offset, theta[0]), radial)
+        } else if x.variation().max(y.variation()) <= STILL * reach * motion.variation {
+            (Taylor::constant(theta[0]), Taylor::constant(value))
+        } else {
+            return Err(singular);
+        };
+        Ok((theta1, radial + -self.geometry.shoulder_offset))
     }
 }
 
-/// θ₄, θ₅ and θ₆ of the wrist's rotation relative to the forearm.
+/// θ₄, θ₅ and θ₆ of the wrist's rotation h relative to the forearm.
 ///
 /// The same components as in the inverse itself: with σ, δ half the sum and half the difference of θ₄ and θ₆, the
-/// quaternion is (cos(θ₅/2) cos σ, −sin(θ₅/2) sin δ, sin(θ₅/2) cos δ, cos(θ₅/2) sin σ).
+/// quaternion is (cos(θ₅/2) cos σ, −sin(θ₅/2) sin δ, sin(θ₅/2) cos δ, cos(θ₅/2) sin σ), or the negative of that.
 #[inline]
 fn wrist_series(
     motion: &WristMotion,
@@ -96,29 +103,31 @@ fn wrist_series(
     theta: &[f64; 6],
 ) -> Result<[Taylor; 3], InverseError> {
     let [_, _, _, theta4, theta5, theta6] = *theta;
-    let sin5 = sin(theta5);
-    let still = STILL * motion.variation;
-    if sin5.abs() <= VANISHING {
-        let held = (Taylor::constant(theta4), Taylor::constant(theta5));
-        let upright = cos(theta5) > 0.0;
-        if upright && h.x.variation().max(h.y.variation()) <= still {
-            let sum = Taylor::angle(h.w, h.z, 0.5 * (theta4 + theta6)) * 2.0;
-            return Ok([held.0, held.1, sum - held.0]);
-        }
-        if !upright && h.w.variation().max(h.z.variation()) <= still {
-            let difference = Taylor::angle(h.y, -h.x, 0.5 * (theta4 - theta6)) * 2.0;
-            return Ok([held.0, held.1, held.0 - difference]);
-        }
-        return Err(InverseError::Singular { singularity: Singularity::Wrist, distance: sin5.abs() });
+    let (sum, difference) = (0.5 * (theta4 + theta6), 0.5 * (theta4 - theta6));
+    let (sin, cos) = sin_cos(0.5 * theta5);
+    let (straight, bent) = ([h.w, h.z], [h.y, -h.x]);
+    let sign = 1.0_f64.copysign(cos * towards(straight, sum) + sin * towards(bent, difference));
+    let distance = 2.0 * (sin * cos).abs();
+    let singular = InverseError::Singular { singularity: Singularity::Wrist, distance };
+    let polar = |point, radius, angle| Polar::of(point, radius, angle, 1.0, motion.variation).ok_or(singular);
+    let (straight, bent) = (polar(straight, sign * cos, sum)?, polar(bent, sign * sin, difference)?);
+    let theta5 = Taylor::angle(straight.radius, bent.radius, 0.5 * theta5) * 2.0;
+    // A wrist that rests at its pole keeps θ₄, and turns by θ₆ alone.
+    let theta4_held = Taylor::constant(theta4);
+    if bent.at_rest {
+        return Ok([theta4_held, theta5, straight.angle * 2.0 - theta4_held]);
     }
-    let half_sum = Taylor::angle(h.w, h.z, 0.5 * (theta4 + theta6));
-    let half_difference = Taylor::angle(h.y, -h.x, 0.5 * (theta4 - theta6));
-    // cos θ₅ and sin θ₅, from the squares of cos(θ₅/2) and sin(θ₅/2).
-    let straight = h.w.squared() + h.z.squared();
-    let bent = h.x.squared() + h.y.squared();
-    let half_sine = (straight * bent).sqrt_from(0.5 * sin5);
-    let theta5 = Taylor::angle(straight - bent, half_sine * 2.0, theta5);
-    Ok([half_sum + half_difference, theta5, half_sum - half_difference])
+    if straight.at_rest {
+        return Ok([theta4_held, theta5, theta4_held - bent.angle * 2.0]);
+    }
+    Ok([straight.angle + bent.angle, theta5, straight.angle - bent.angle])
+}
+
+/// The coordinate of a point along a direction.
+#[inline]
+fn towards([x, y]: [Taylor; 2], angle: f64) -> f64 {
+    let (sin, cos) = sin_cos(angle);
+    x.value() * cos + y.value() * sin
 }
 
 impl QuaternionSeries {

@@ -18,8 +18,10 @@ pub use solutions::{Solution, Solutions};
 
 use nalgebra::{Quaternion, UnitQuaternion};
 
-use super::two_link::TwoLink;
-use super::{Branches, InverseError, JointAxes, JointAxis, JointJet, JointLimits, Kinematics, ModelError};
+use super::closed_form::TwoLink;
+use super::{
+    Branches, InverseError, JointAxes, JointAxis, JointJet, JointKind, JointLimits, Kinematics, ModelError,
+};
 use crate::geometry::{Pose, PoseJet, Vector3, is_finite};
 use crate::math::float::{atan2, hypot, sin_cos};
 
@@ -265,8 +267,11 @@ impl Kinematics<6> for SphericalWristArm {
             (turned([-sin4 * cos23, cos4, sin4 * sin23]), centre),
             (turned(last), centre),
         ];
-        let axis =
-            |i: usize| JointAxis { direction: lines[i].0 * g.signs[i], point: lines[i].1, prismatic: false };
+        let axis = |i: usize| JointAxis {
+            direction: lines[i].0 * g.signs[i],
+            point: lines[i].1,
+            kind: JointKind::Revolute,
+        };
         JointAxes {
             axes: core::array::from_fn(axis),
             base_from_flange: base_from_wrist * g.wrist_from_flange,
@@ -282,10 +287,7 @@ impl Kinematics<6> for SphericalWristArm {
         base_from_flange: &Pose,
         reference: &[f64; 6],
     ) -> Result<Branches<[f64; 6], 8>, InverseError> {
-        let mut found = Branches::none(*reference);
-        let within = self.inverse_within_limits(base_from_flange, reference)?;
-        within.as_slice().iter().for_each(|solution| found.push(solution.q));
-        Ok(found)
+        Ok(self.inverse_within_limits(base_from_flange, reference)?.map(|solution| solution.q))
     }
 
     fn joint_jet(&self, base_from_flange: &PoseJet, q: &[f64; 6]) -> Result<JointJet<6>, InverseError> {

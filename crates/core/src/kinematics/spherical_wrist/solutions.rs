@@ -5,8 +5,8 @@ use core::f64::consts::PI;
 use super::inverse::{Links, Side, Target, named};
 use super::{Configuration, Elbow, Posture, Shoulder, SphericalWristArm, Wrist};
 use crate::geometry::Pose;
-use crate::kinematics::branches::Branches;
-use crate::kinematics::limits::{distance_squared, least_excess_turn, nearest_turn, nearest_turn_within};
+use crate::kinematics::branches::{Branches, nearest};
+use crate::kinematics::limits::{least_excess_turn, nearest_turn, nearest_turn_within};
 use crate::kinematics::{InverseError, JointKind};
 use crate::math::float::cos;
 
@@ -44,7 +44,7 @@ impl SphericalWristArm {
         let mut found = Solutions::none(NOTHING);
         let front = self.side(&target, Shoulder::Front)?;
         let first_error = self.push_elbows(&mut found, &target, &front).err();
-        if !front.singular {
+        if !front.plane.singular {
             let rear = self.side(&target, Shoulder::Rear)?;
             // The rear's reach is the harder one: where both fail, the front's evidence is the nearer.
             let _ = self.push_elbows(&mut found, &target, &rear);
@@ -103,16 +103,8 @@ impl SphericalWristArm {
     /// The joint positions within the limits nearest to `seed`.
     pub(super) fn nearest(&self, base_from_flange: &Pose, seed: &[f64; 6]) -> Result<[f64; 6], InverseError> {
         let all = self.inverse(base_from_flange, &self.clamped(seed))?;
-        let mut best = None;
-        for solution in all.as_slice() {
-            if let Some(q) = self.turned_within(solution, seed) {
-                let distance = distance_squared(&q, seed);
-                if best.is_none_or(|(_, least)| distance < least) {
-                    best = Some((q, distance));
-                }
-            }
-        }
-        best.map(|(q, _)| q).ok_or_else(|| self.limit_evidence(&all, seed))
+        let within = all.as_slice().iter().filter_map(|solution| self.turned_within(solution, seed));
+        nearest(within, seed).ok_or_else(|| self.limit_evidence(&all, seed))
     }
 
     /// The joint positions in a given configuration; joints 2, 3 and 5 in the turn nearest to `reference`.
@@ -192,15 +184,10 @@ impl SphericalWristArm {
     /// Which joint keeps the branch nearest to the reference outside the limits.
     #[cold]
     fn limit_evidence(&self, all: &Solutions, reference: &[f64; 6]) -> InverseError {
-        let mut nearest = ([0.0; 6], f64::INFINITY);
-        for solution in all.as_slice() {
-            let q: [f64; 6] = core::array::from_fn(|i| nearest_turn(solution.q[i], reference[i]));
-            let distance = distance_squared(&q, reference);
-            if distance < nearest.1 {
-                nearest = (q, distance);
-            }
-        }
-        self.limits.worst_violation(&nearest.0, &KINDS)
+        let turned = |s: &Solution| core::array::from_fn(|i| nearest_turn(s.q[i], reference[i]));
+        // There is at least one branch: none at all is another error.
+        let q = nearest(all.as_slice().iter().map(turned), reference).unwrap_or(*reference);
+        self.limits.worst_violation(&q, &KINDS)
     }
 }
 

@@ -3,43 +3,43 @@
 //! Directions are angles t with the unit vector (out, up) = (sin t, cos t): the upper link points at angle t, the second
 //! one at t + bend.
 
-use super::{InverseError, Singularity};
+use crate::kinematics::{InverseError, Singularity};
 use crate::math::float::{sin, sin_cos, sqrt};
 use crate::math::taylor::Taylor;
 
 /// A length beyond the reach by less than this part of it is rounding. Leaves at most 8e-14 m on a 2 m arm.
-pub(super) const REACH_ROUNDING: f64 = 4e-14;
+pub(crate) const REACH_ROUNDING: f64 = 4e-14;
 /// A point nearer to an axis than this part of the reach lies on it, and the joint is free.
-pub(super) const ON_AXIS: f64 = 1e-14;
+pub(crate) const ON_AXIS: f64 = 1e-14;
 /// Below this the sine of the bend may be rounding: the end is within 1e-14 of the reach.
 const VANISHING_SINE: f64 = 1e-7;
 /// What varies by less than this part of the whole motion stands still.
-pub(super) const STILL: f64 = 1e-12;
+pub(crate) const STILL: f64 = 1e-12;
 
 /// Lengths of the links in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct TwoLink {
-    pub(super) upper: f64,
-    pub(super) fore: f64,
+pub(crate) struct TwoLink {
+    pub(crate) upper: f64,
+    pub(crate) fore: f64,
 }
 
 /// Cosine and (not negative) sine of the bend. The sine is zero where both bends are one.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Bend {
-    pub(super) cos: f64,
-    pub(super) sin: f64,
+pub(crate) struct Bend {
+    pub(crate) cos: f64,
+    pub(crate) sin: f64,
 }
 
 impl TwoLink {
     /// Greatest distance.
     #[inline]
-    pub(super) fn reach(&self) -> f64 {
+    pub(crate) fn reach(&self) -> f64 {
         self.upper + self.fore
     }
 
     /// The bend that reaches a point: law of cosines in the triangle of the two links.
     #[inline]
-    pub(super) fn bend(&self, [out, up]: [f64; 2]) -> Result<Bend, InverseError> {
+    pub(crate) fn bend(&self, [out, up]: [f64; 2]) -> Result<Bend, InverseError> {
         let Self { upper, fore } = *self;
         let distance_squared = out * out + up * up;
         let distance = sqrt(distance_squared);
@@ -59,7 +59,7 @@ impl TwoLink {
     /// (sin, cos) of the upper link's direction, for a bend with this sign; `free` where the links lie folded on the
     /// first axis and any direction will do.
     #[inline]
-    pub(super) fn upper_direction(&self, [out, up]: [f64; 2], bend: Bend, free: f64) -> (f64, f64) {
+    pub(crate) fn upper_direction(&self, [out, up]: [f64; 2], bend: Bend, free: f64) -> (f64, f64) {
         // The end as seen from the upper link, `along` it and `across`.
         let along = self.upper + self.fore * bend.cos;
         let across = self.fore * bend.sin;
@@ -76,7 +76,7 @@ impl TwoLink {
     /// The angle of the upper link and the bend as series, with these values, for a moving end point. `still` is the
     /// largest coefficient that counts as rounding.
     #[inline]
-    pub(super) fn series(
+    pub(crate) fn series(
         &self,
         [out, up]: [Taylor; 2],
         [angle, bend]: [f64; 2],
