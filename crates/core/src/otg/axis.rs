@@ -1,13 +1,14 @@
 //! One axis, whatever its control and limits: brake first, then the motion proper.
 
-use super::brake::{self, Brake};
+use super::brake::Brake;
 use super::error::Error;
 use super::extremal::Problem;
-use super::fixed_duration::{self, Piece, Pieces};
+use super::fixed_duration::{Draft, Later, Piece};
 use super::input::{Control, Input};
+use super::number::{between, larger};
 use super::profile::{Order, Point, Profile};
 use super::second_order::{Cruise, SecondOrder};
-use super::third_order::{Arrival, Span, ThirdOrder};
+use super::third_order::{Arrival, ThirdOrder};
 
 /// The problem of one axis, in the user's units.
 #[derive(Debug, Clone, Copy)]
@@ -66,6 +67,7 @@ const SAME: f64 = 4.0 * f64::EPSILON;
 
 /// The motion after the brake.
 #[derive(Debug, Clone, Copy)]
+#[allow(clippy::large_enum_variant)] // There is no heap to put the large one on, and it is the usual one.
 enum Motion {
     /// Position control with limited jerk.
     Third(ThirdOrder),
@@ -77,31 +79,26 @@ enum Motion {
     Only(f64),
 }
 
-/// How an axis arrives at its own time.
+/// How an axis arrives.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Solution {
     /// It is there.
     AtOnce,
-    Third(Arrival),
+    Earliest(Arrival),
+    Later(Later),
     Second(Cruise),
     Only,
-}
-
-/// What is known about an axis at a time at which it can arrive.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Reach {
-    Third(Span),
-    Other,
 }
 
 /// One axis, ready to be asked when it can arrive.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Axis {
     motion: Motion,
-    brake: Brake,
-    current: Point,
+    /// Duration of the brake, whose phases are in the profile already.
+    brake: f64,
+    /// State after the brake, in the user's units.
+    start: Point,
     target: Point,
-    order: Order,
     /// The jerk limit, where the problem is normalised by it; otherwise 1.
     scale: f64,
     at_target: bool,
@@ -109,154 +106,201 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    pub(super) fn new(input: &AxisInput, axis: usize) -> Result<Self, Error> {
-        let mut made = match input.control {
-            Control::Position => Self::position(input, axis)?,
-            Control::Velocity => Self::velocity(input, axis)?,
-        };
-        made.at_target = input.is_at_target();
-        Ok(made)
-    }
+    /// An axis that nobody plans. All zeros, so that it costs next to nothing.
+    pub(super) const IDLE: Self = Self {
+        motion: Motion::Only(0.0),
+        brake: 0.0,
+        start: Point { p: 0.0, v: 0.0, a: 0.0 },
+        target: Point { p: 0.0, v: 0.0, a: 0.0 },
+        scale: 0.0,
+        at_target: false,
+        velocity_control: false,
+    };
 
-    /// An axis that nobody plans: it goes on at its acceleration.
-    pub(super) fn coasting(input: &AxisInput) -> Self {
-        let mut axis = Self::with(input, Motion::Only(0.0), Brake::NONE, Order::Third, 1.0);
-        axis.target = axis.current;
-        axis.at_target = true;
-        axis
-    }
-
-    fn with(input: &AxisInput, motion: Motion, brake: Brake, order: Order, scale: f64) -> Self {
-        let AxisInput { current, target, .. } = *input;
-        let velocity_control = input.control == Control::Velocity;
-        Self { motion, brake, current, target, order, scale, at_target: false, velocity_control }
+    /// Begins the profile with the brake, if one is needed, and makes the axis ready for the motion after it.
+    pub(super) fn set(&mut self, input: &AxisInput, axis: usize, profile: &mut Profile) -> Result<(), Error> {
+        self.start = input.current;
+        self.target = input.target;
+        self.scale = 1.0;
+        self.at_target = input.is_at_target();
+        self.velocity_control = input.control == Control::Velocity;
+        profile.begin(input.target, Order::Third);
+        if input.jerk == 0.0 || input.a_max == 0.0 || input.a_min == 0.0 {
+            self.motion = Motion::Only(only_duration(input).ok_or(Error::Unreachable { axis })?);
+        } else if self.velocity_control {
+            self.set_velocity(input, profile);
+        } else if input.jerk < f64::INFINITY {
+            self.set_third_order(input, profile);
+        } else {
+            self.set_second_order(input, profile);
+            let unlimited = input.v_max == f64::INFINITY || input.v_min == f64::NEG_INFINITY;
+            if profile.order() == Order::First && unlimited {
+                return Err(Error::Unlimited { axis });
+            }
+        }
+        if profile.duration() > 0.0 {
+            self.brake = profile.duration();
+            profile.brake_is_complete();
+        }
+        Ok(())
     }
 
     /// The problem in units in which the jerk limit is 1.
     fn normalised(input: &AxisInput) -> Problem {
-        let j = input.jerk;
+        let unit = 1.0 / input.jerk;
         Problem {
-            displacement: (input.target.p - input.current.p) / j,
-            v0: input.current.v / j,
-            a0: input.current.a / j,
-            vf: input.target.v / j,
-            af: input.target.a / j,
-            v_max: input.v_max / j,
-            v_min: input.v_min / j,
-            a_max: input.a_max / j,
-            a_min: input.a_min / j,
+            displacement: (input.target.p - input.current.p) * unit,
+            v0: input.current.v * unit,
+            a0: input.current.a * unit,
+            vf: input.target.v * unit,
+            af: input.target.a * unit,
+            v_max: input.v_max * unit,
+            v_min: input.v_min * unit,
+            a_max: input.a_max * unit,
+            a_min: input.a_min * unit,
         }
     }
 
-    fn position(input: &AxisInput, axis: usize) -> Result<Self, Error> {
-        let AxisInput { current, target, v_max, v_min, a_max, a_min, jerk, .. } = *input;
-        if jerk == 0.0 || a_max == 0.0 || a_min == 0.0 {
-            let t = only_duration(input).ok_or(Error::Unreachable { axis })?;
-            return Ok(Self::with(input, Motion::Only(t), Brake::NONE, Order::Third, 1.0));
-        }
-        if jerk < f64::INFINITY {
-            let mut problem = Self::normalised(input);
-            let brake = brake::brake(&mut problem);
-            let third = ThirdOrder::new(problem, SAME * input.coordinates / jerk);
-            return Ok(Self::with(input, Motion::Third(third), brake, Order::Third, jerk));
-        }
-        let order =
-            if a_max < f64::INFINITY || a_min > f64::NEG_INFINITY { Order::Second } else { Order::First };
-        if order == Order::First && (v_max == f64::INFINITY || v_min == f64::NEG_INFINITY) {
-            return Err(Error::Unlimited { axis });
-        }
+    fn set_third_order(&mut self, input: &AxisInput, profile: &mut Profile) {
+        let mut problem = Self::normalised(input);
+        self.scale = input.jerk;
+        Brake { problem: &mut problem, profile, now: &mut self.start, scale: self.scale }.apply();
+        self.motion = Motion::Third(ThirdOrder::new(problem, SAME * input.coordinates / self.scale));
+    }
+
+    fn set_second_order(&mut self, input: &AxisInput, profile: &mut Profile) {
+        let AxisInput { current, target, v_max, v_min, a_max, a_min, .. } = *input;
         let (rise, fall) = (1.0 / a_max, -1.0 / a_min);
-        let mut displacement = target.p - current.p;
-        let mut brake = Brake::NONE;
-        let v0 = current.v.clamp(v_min, v_max);
-        let (v0, vf) = if order == Order::First { (0.0, 0.0) } else { (v0, target.v) };
-        if order == Order::Second && v0 != current.v {
+        let (mut v0, mut vf) = (0.0, 0.0);
+        if rise == 0.0 && fall == 0.0 {
+            profile.begin(target, Order::First);
+        } else {
+            profile.begin(target, Order::Second);
+            (v0, vf) = (between(current.v, v_min, v_max), target.v);
             let (duration, acceleration) = if current.v > v0 {
                 ((current.v - v0) * fall, a_min)
             } else {
                 ((v0 - current.v) * rise, a_max)
             };
-            brake = Brake::one(Piece { duration, jerk: 0.0, acceleration });
-            displacement -= 0.5 * (current.v + v0) * duration;
+            profile.push_forward(&Piece { duration, jerk: 0.0, acceleration }, 1.0, &mut self.start);
+            self.start.v = v0;
         }
-        let second = SecondOrder { displacement, v0, vf, v_max, v_min, rise, fall };
-        Ok(Self::with(input, Motion::Second(second), brake, order, 1.0))
+        let displacement = target.p - self.start.p;
+        self.motion = Motion::Second(SecondOrder { displacement, v0, vf, v_max, v_min, rise, fall });
     }
 
-    fn velocity(input: &AxisInput, axis: usize) -> Result<Self, Error> {
-        let AxisInput { current, target, a_max, a_min, jerk, .. } = *input;
-        if jerk == 0.0 || (a_max == 0.0 && a_min == 0.0) {
-            let t = only_duration(input).ok_or(Error::Unreachable { axis })?;
-            return Ok(Self::with(input, Motion::Only(t), Brake::NONE, Order::Third, 1.0));
+    fn set_velocity(&mut self, input: &AxisInput, profile: &mut Profile) {
+        if input.jerk == f64::INFINITY {
+            profile.begin(input.target, Order::Second);
+            let displacement = input.target.v - input.current.v;
+            let (v_max, v_min) = (input.a_max, input.a_min);
+            let jump = SecondOrder { displacement, v0: 0.0, vf: 0.0, v_max, v_min, rise: 0.0, fall: 0.0 };
+            self.motion = Motion::Velocity(jump);
+            return;
         }
-        if jerk < f64::INFINITY {
-            let mut problem = Self::normalised(input);
-            let brake = brake::acceleration_only(&mut problem);
-            let displacement = problem.vf - problem.v0;
-            let (v0, vf, v_max, v_min) = (problem.a0, problem.af, problem.a_max, problem.a_min);
-            let second = SecondOrder { displacement, v0, vf, v_max, v_min, rise: 1.0, fall: 1.0 };
-            return Ok(Self::with(input, Motion::Velocity(second), brake, Order::Third, jerk));
-        }
-        let displacement = target.v - current.v;
-        let second =
-            SecondOrder { displacement, v0: 0.0, vf: 0.0, v_max: a_max, v_min: a_min, rise: 0.0, fall: 0.0 };
-        Ok(Self::with(input, Motion::Velocity(second), Brake::NONE, Order::Second, 1.0))
+        let mut problem = Self::normalised(input);
+        self.scale = input.jerk;
+        Brake { problem: &mut problem, profile, now: &mut self.start, scale: self.scale }
+            .apply_acceleration();
+        let Problem { v0, a0, vf, af, a_max, a_min, .. } = problem;
+        let (displacement, v0, vf, v_max, v_min) = (vf - v0, a0, af, a_max, a_min);
+        self.motion =
+            Motion::Velocity(SecondOrder { displacement, v0, vf, v_max, v_min, rise: 1.0, fall: 1.0 });
     }
 
-    /// The first arrival at or after `from`, at which the axis cannot arrive (or `from` is 0): duration and solution.
-    pub(super) fn earliest(&self, from: f64) -> (f64, Solution) {
+    /// The first arrival at or after `from`, at which the axis cannot arrive (or `from` is 0): its time and the solution.
+    pub(super) fn earliest(&self, from: f64, solution: &mut Solution) -> f64 {
         if self.at_target && from <= 0.0 {
-            return (0.0, Solution::AtOnce);
+            *solution = Solution::AtOnce;
+            return 0.0;
         }
-        let from = (from - self.brake.duration).max(0.0);
-        let (t, solution) = match &self.motion {
+        let from = larger(from - self.brake, 0.0);
+        let t = match &self.motion {
             Motion::Third(third) => {
                 let arrival = third.earliest(from);
-                (arrival.extremal.t, Solution::Third(arrival))
+                *solution = Solution::Earliest(arrival);
+                arrival.t
             }
             Motion::Second(second) | Motion::Velocity(second) => {
                 let cruise = second.earliest(from);
-                (cruise.duration(), Solution::Second(cruise))
+                *solution = Solution::Second(cruise);
+                cruise.duration()
             }
-            Motion::Only(t) => (if from > *t { f64::INFINITY } else { *t }, Solution::Only),
+            Motion::Only(t) => {
+                *solution = Solution::Only;
+                if from > *t { f64::INFINITY } else { *t }
+            }
         };
-        (self.brake.duration + t, solution)
+        self.brake + t
     }
 
-    /// Whether the axis can arrive at `t`, and what the motion there is made from.
-    pub(super) fn reachable(&self, t: f64) -> Option<Reach> {
-        let t = t - self.brake.duration;
+    /// The arrival at `t`, if the axis can arrive then.
+    pub(super) fn at(&self, t: f64) -> Option<Solution> {
+        let t = t - self.brake;
         match &self.motion {
-            Motion::Third(third) => third.reachable(t).map(Reach::Third),
-            Motion::Second(second) | Motion::Velocity(second) => second.reachable(t).then_some(Reach::Other),
-            Motion::Only(only) => (*only == t).then_some(Reach::Other),
+            Motion::Third(third) => third.at(t).map(Solution::Later),
+            Motion::Second(second) | Motion::Velocity(second) => second.at(t).map(Solution::Second),
+            Motion::Only(only) => (*only == t).then_some(Solution::Only),
         }
     }
 
-    /// The motion of a solution.
-    pub(super) fn profile(&self, solution: &Solution) -> Profile {
+    /// Adds the motion of a solution to the profile.
+    pub(super) fn write(&self, solution: &Solution, profile: &mut Profile) {
         match (&self.motion, solution) {
-            (Motion::Third(third), Solution::Third(arrival)) => {
-                self.with_jerk(&fixed_duration::of_arrival(third, arrival))
+            (Motion::Third(third), Solution::Earliest(arrival)) => {
+                self.draft(profile).arrival(&third.problem, arrival);
             }
-            (Motion::Second(second), Solution::Second(cruise)) => self.with_acceleration(second, cruise),
-            (Motion::Velocity(second), Solution::Second(cruise)) => self.to_velocity(second, cruise),
-            (Motion::Only(t), Solution::Only) => self.only(*t),
-            _ => Profile::ending_at(self.target, self.order),
+            (Motion::Third(third), Solution::Later(later)) => {
+                self.draft(profile).later(&third.problem, later)
+            }
+            (Motion::Second(second), Solution::Second(cruise)) => self.write_second(second, cruise, profile),
+            (Motion::Velocity(second), Solution::Second(cruise)) => {
+                self.write_velocity(second, cruise, profile)
+            }
+            (Motion::Only(t), Solution::Only) => self.write_only(*t, profile),
+            // There already: no brake either.
+            _ => profile.begin(self.target, profile.order()),
         }
     }
 
-    /// The motion that arrives at `t`, at which the axis can arrive.
-    pub(super) fn profile_at(&self, t: f64, reach: &Reach) -> Profile {
-        let t = t - self.brake.duration;
-        match (&self.motion, reach) {
-            (Motion::Third(third), Reach::Third(span)) => {
-                self.with_jerk(&fixed_duration::between(third, t, span))
-            }
-            (Motion::Second(second), _) => self.with_acceleration(second, &second.between(t)),
-            (Motion::Velocity(second), _) => self.to_velocity(second, &second.between(t)),
-            (Motion::Only(only), _) => self.only(*only),
-            (Motion::Third(_), Reach::Other) => Profile::ending_at(self.target, self.order),
+    fn draft<'a>(&self, profile: &'a mut Profile) -> Draft<'a> {
+        Draft { profile, now: self.start, target: self.target, scale: self.scale }
+    }
+
+    /// Position control without jerk limit: two ramps and a cruise.
+    fn write_second(&self, second: &SecondOrder, cruise: &Cruise, profile: &mut Profile) {
+        let mut now = self.start;
+        for (to, duration) in [(cruise.w, cruise.first), (cruise.w, cruise.cruise), (second.vf, cruise.last)]
+        {
+            let acceleration = if duration > 0.0 { (to - now.v) / duration } else { 0.0 };
+            profile.push_forward(&Piece { duration, jerk: 0.0, acceleration }, 1.0, &mut now);
+            now.v = to; // jumps where the acceleration is unlimited
+        }
+    }
+
+    /// Velocity control: two ramps of the acceleration and a hold, or a hold alone if the jerk is unlimited.
+    fn write_velocity(&self, second: &SecondOrder, cruise: &Cruise, profile: &mut Profile) {
+        let mut now = self.start;
+        let ramp = |to: f64, from: f64, duration: f64| {
+            let jerk = if to >= from { 1.0 } else { -1.0 };
+            Piece { duration, jerk, acceleration: from }
+        };
+        for piece in [
+            ramp(cruise.w, second.v0, cruise.first),
+            Piece { duration: cruise.cruise, jerk: 0.0, acceleration: cruise.w },
+            ramp(second.vf, cruise.w, cruise.last),
+        ] {
+            profile.push_forward(&piece, self.scale, &mut now);
+        }
+        profile.end_at(Point { p: now.p, ..self.target });
+    }
+
+    /// The only motion that a zero limit leaves.
+    fn write_only(&self, duration: f64, profile: &mut Profile) {
+        let mut now = self.start;
+        profile.push_forward(&Piece { duration, jerk: 0.0, acceleration: now.a }, 1.0, &mut now);
+        if self.velocity_control {
+            profile.end_at(Point { p: now.p, ..self.target });
         }
     }
 }
@@ -286,80 +330,3 @@ fn only_duration(input: &AxisInput) -> Option<f64> {
 
 /// How exactly, relative to the distance, a motion without choice must meet its target.
 const ONLY: f64 = 1e-12;
-
-/// Assembly of profiles in the user's units.
-impl Axis {
-    /// A profile that holds the brake so far, and the state after it.
-    fn after_brake(&self) -> (Profile, Point) {
-        let mut profile = Profile::ending_at(self.target, self.order);
-        let mut now = self.current;
-        if self.brake.duration > 0.0 {
-            for piece in self.brake.as_slice() {
-                profile.push_forward(piece, self.scale, &mut now);
-            }
-            profile.brake_is_complete();
-        }
-        (profile, now)
-    }
-
-    /// Pieces of constant jerk that lead to the target: up to the cruise reckoned from the start, then back from
-    /// the target, so that rounding errors do not grow with the duration.
-    fn with_jerk(&self, pieces: &Pieces) -> Profile {
-        let (mut profile, mut now) = self.after_brake();
-        let (list, cruise) = (pieces.as_slice(), pieces.cruise());
-        let half = match cruise {
-            Some((index, _)) => index + 1,
-            None => list.len().div_ceil(2),
-        };
-        for (index, piece) in list[..half].iter().enumerate() {
-            if let Some((_, velocity)) = cruise.filter(|(at, _)| *at == index) {
-                now.v = velocity * self.scale;
-            }
-            profile.push_forward(piece, self.scale, &mut now);
-        }
-        profile.extend_backward(&list[half..], self.scale, self.target);
-        profile
-    }
-
-    /// Position control without jerk limit: two ramps and a cruise.
-    fn with_acceleration(&self, second: &SecondOrder, cruise: &Cruise) -> Profile {
-        let (mut profile, mut now) = self.after_brake();
-        let mut ramp = |now: &mut Point, to: f64, duration: f64| {
-            let acceleration = if duration > 0.0 { (to - now.v) / duration } else { 0.0 };
-            profile.push_forward(&Piece { duration, jerk: 0.0, acceleration }, 1.0, now);
-            now.v = to; // jumps where the acceleration is unlimited
-        };
-        ramp(&mut now, cruise.w, cruise.first);
-        ramp(&mut now, cruise.w, cruise.cruise);
-        ramp(&mut now, second.vf, cruise.last);
-        profile
-    }
-
-    /// Velocity control: two ramps of the acceleration and a hold, or one jump if the jerk is unlimited.
-    fn to_velocity(&self, second: &SecondOrder, cruise: &Cruise) -> Profile {
-        let (mut profile, mut now) = self.after_brake();
-        let ramp = |to: f64, from: f64, duration: f64| {
-            let jerk = if second.rise == 0.0 { 0.0 } else { (to - from).signum() };
-            Piece { duration, jerk, acceleration: from }
-        };
-        for piece in [
-            ramp(cruise.w, second.v0, cruise.first),
-            Piece { duration: cruise.cruise, jerk: 0.0, acceleration: cruise.w },
-            ramp(second.vf, cruise.w, cruise.last),
-        ] {
-            profile.push_forward(&piece, self.scale, &mut now);
-        }
-        profile.end_at(Point { p: now.p, ..self.target });
-        profile
-    }
-
-    /// The only motion that a zero limit leaves.
-    fn only(&self, duration: f64) -> Profile {
-        let (mut profile, mut now) = self.after_brake();
-        profile.push_forward(&Piece { duration, jerk: 0.0, acceleration: now.a }, 1.0, &mut now);
-        if self.velocity_control {
-            profile.end_at(Point { p: now.p, ..self.target });
-        }
-        profile
-    }
-}

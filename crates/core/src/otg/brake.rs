@@ -3,92 +3,75 @@
 
 use super::extremal::Problem;
 use super::fixed_duration::Piece;
+use super::number::{SIXTH, between, larger, smaller};
+use super::profile::{Point, Profile};
 use crate::math::float::sqrt;
 
-/// Most pieces of a brake.
-pub(super) const MAX_BRAKE: usize = 4;
-
-/// The pieces of a brake, jerk limit 1.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Brake {
-    list: [Piece; MAX_BRAKE],
-    len: usize,
-    pub(super) duration: f64,
+/// A problem whose start is being moved inside its limits, and the phases that do it.
+#[derive(Debug)]
+pub(super) struct Brake<'a> {
+    pub(super) problem: &'a mut Problem,
+    pub(super) profile: &'a mut Profile,
+    /// The start, in the user's units.
+    pub(super) now: &'a mut Point,
+    /// The jerk limit.
+    pub(super) scale: f64,
 }
 
-impl Brake {
-    pub(super) const NONE: Self = Self {
-        list: [Piece { duration: 0.0, jerk: 0.0, acceleration: 0.0 }; MAX_BRAKE],
-        len: 0,
-        duration: 0.0,
-    };
-
-    pub(super) fn one(piece: Piece) -> Self {
-        let mut brake = Self::NONE;
-        brake.list[0] = piece;
-        brake.len = 1;
-        brake.duration = piece.duration;
-        brake
-    }
-
-    pub(super) fn as_slice(&self) -> &[Piece] {
-        &self.list[..self.len]
-    }
-
-    /// Appends a piece and moves the problem's start to its end, with the acceleration `a` there.
-    fn push(&mut self, problem: &mut Problem, duration: f64, jerk: f64, a: f64) {
+impl Brake<'_> {
+    /// Appends a piece and moves the start to its end, with the acceleration `a` there.
+    fn push(&mut self, duration: f64, jerk: f64, a: f64) {
+        let (problem, t) = (&mut *self.problem, duration);
         let acceleration = problem.a0;
-        if duration > 0.0 && self.len < MAX_BRAKE {
-            self.list[self.len] = Piece { duration, jerk, acceleration };
-            self.len += 1;
-            self.duration += duration;
-            problem.displacement -= duration * (problem.v0 + duration * (2.0 * acceleration + a) / 6.0);
-            problem.v0 += 0.5 * duration * (acceleration + a);
+        if t > 0.0 {
+            self.profile.push_forward(&Piece { duration, jerk, acceleration }, self.scale, self.now);
+            problem.displacement -= t * (problem.v0 + t * (2.0 * acceleration + a) * SIXTH);
+            problem.v0 += 0.5 * t * (acceleration + a);
         }
         problem.a0 = a;
+    }
+
+    /// Moves the start of the problem inside its limits.
+    pub(super) fn apply(&mut self) {
+        self.apply_acceleration();
+        let above = highest_velocity(self.problem) > self.problem.v_max;
+        let below = lowest_velocity(self.problem) < self.problem.v_min;
+        if above && (self.problem.a0 > 0.0 || !below) {
+            for step in slow_down(self.problem) {
+                self.push(step.duration, step.jerk, step.acceleration);
+            }
+            self.problem.v0 = self.problem.v_max;
+        } else if below {
+            for step in slow_down(&self.problem.mirror()) {
+                self.push(step.duration, -step.jerk, -step.acceleration);
+            }
+            self.problem.v0 = self.problem.v_min;
+        } else {
+            return;
+        }
+        self.now.v = self.problem.v0 * self.scale;
+    }
+
+    /// Brings the acceleration inside its limits, whatever the velocity.
+    pub(super) fn apply_acceleration(&mut self) {
+        let Problem { a0, a_max, a_min, .. } = *self.problem;
+        if a0 > a_max {
+            self.push(a0 - a_max, -1.0, a_max);
+        } else if a0 < a_min {
+            self.push(a_min - a0, 1.0, a_min);
+        }
     }
 }
 
 /// The velocity at which the acceleration, brought to zero as fast as can be, ends.
 fn highest_velocity(problem: &Problem) -> f64 {
-    let a = problem.a0.max(0.0);
+    let a = larger(problem.a0, 0.0);
     problem.v0 + 0.5 * a * a
 }
 
 fn lowest_velocity(problem: &Problem) -> f64 {
-    let a = problem.a0.min(0.0);
+    let a = smaller(problem.a0, 0.0);
     problem.v0 - 0.5 * a * a
-}
-
-/// Moves the start of the problem inside its limits, and says how it got there.
-pub(super) fn brake(problem: &mut Problem) -> Brake {
-    let mut brake = acceleration_only(problem);
-    let above = highest_velocity(problem) > problem.v_max;
-    let below = lowest_velocity(problem) < problem.v_min;
-    if above && (problem.a0 > 0.0 || !below) {
-        for step in slow_down(problem) {
-            brake.push(problem, step.duration, step.jerk, step.acceleration);
-        }
-        problem.v0 = problem.v_max;
-    } else if below {
-        for step in slow_down(&problem.mirror()) {
-            brake.push(problem, step.duration, -step.jerk, -step.acceleration);
-        }
-        problem.v0 = problem.v_min;
-    }
-    brake
-}
-
-/// Brings the acceleration inside its limits, whatever the velocity.
-pub(super) fn acceleration_only(problem: &mut Problem) -> Brake {
-    let mut brake = Brake::NONE;
-    let a = problem.a0;
-    if a > problem.a_max {
-        brake.push(problem, a - problem.a_max, -1.0, problem.a_max);
-    } else if a < problem.a_min {
-        brake.push(problem, problem.a_min - a, 1.0, problem.a_min);
-    }
-    brake
 }
 
 /// A piece of the brake, with the acceleration at its end.
@@ -107,9 +90,9 @@ fn slow_down(problem: &Problem) -> [Step; 3] {
     let steepest = sqrt(2.0 * (v_max - v_min));
     let excess = v0 - v_max;
     // The deceleration at v_max if the acceleration falls all the way.
-    let falling = sqrt((a0 * a0 + 2.0 * excess).max(0.0));
+    let falling = sqrt(larger(a0 * a0 + 2.0 * excess, 0.0));
     let step = |duration: f64, jerk, acceleration| Step { duration, jerk, acceleration };
-    if falling <= m.min(steepest) {
+    if falling <= smaller(m, steepest) {
         let nothing = step(0.0, 0.0, -falling);
         [step(a0 + falling, -1.0, -falling), nothing, nothing]
     } else if m <= steepest {
@@ -117,7 +100,7 @@ fn slow_down(problem: &Problem) -> [Step; 3] {
         [step(a0 + m, -1.0, -m), step(left / m, 0.0, -m), step(0.0, 0.0, -m)]
     } else {
         let lost = excess + 0.5 * (a0 * a0 + steepest * steepest); // n², did the valley have no limit
-        let n = sqrt(lost.max(0.0)).min(m).max(steepest);
+        let n = between(sqrt(larger(lost, 0.0)), steepest, m);
         let hold = if n < m { 0.0 } else { (lost - m * m) / m };
         [step(a0 + n, -1.0, -n), step(hold, 0.0, -n), step(n - steepest, 1.0, -steepest)]
     }

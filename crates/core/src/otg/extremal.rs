@@ -5,6 +5,7 @@
 //! where x or n meets its limit, and with a cruise in the middle where the velocity meets its limit. That is one family with
 //! one parameter. Its mirror image gets least far.
 
+use super::number::{SIXTH, between, larger, smaller};
 use crate::math::float::{cbrt, sqrt};
 
 /// A problem of third order with jerk limit 1: from (0, v₀, a₀) to (displacement, v_f, a_f).
@@ -101,7 +102,10 @@ pub(super) struct Shape {
 }
 
 /// Newton's method doubles the number of good digits with each step, so that the step after one this small is exact.
-const LAST_STEP: f64 = 1e-9;
+const LAST_STEP: f64 = 1e-8;
+
+/// Displacements that differ by this fraction are one.
+const ROUNDING: f64 = f64::EPSILON;
 
 /// Most steps of the root search. Newton steps converge within 20 where the displacement is convex, which is everywhere but on a hump; there the
 /// bracket is halved where a step leaves it: 60 halvings exhaust 64-bit floats.
@@ -134,7 +138,7 @@ impl Family {
     ) -> Self {
         let v_first = v0 - 0.5 * a0 * a0;
         let v_last = vf - 0.5 * af * af;
-        let k = af * (v_last + af * af / 6.0) - a0 * (v_first + a0 * a0 / 6.0);
+        let k = af * (v_last + af * af * SIXTH) - a0 * (v_first + a0 * a0 * SIXTH);
         let mut family = Self {
             v_first,
             v_last,
@@ -155,7 +159,7 @@ impl Family {
             if af >= r {
                 family.island = Some((-af, -r));
             }
-            family.start = family.parameter(r_squared, r).max(-af);
+            family.start = larger(family.parameter(r_squared, r), -af);
         }
         family
     }
@@ -205,8 +209,8 @@ impl Family {
     /// The motion whose peak velocity is the limit.
     #[inline]
     pub(super) fn at_velocity_limit(&self) -> Extremal {
-        let y = (self.v_max - self.v_last).max(0.0);
-        let limited = self.at(self.parameter(y, sqrt(y)).max(self.start));
+        let y = larger(self.v_max - self.v_last, 0.0);
+        let limited = self.at(larger(self.parameter(y, sqrt(y)), self.start));
         Extremal { w: self.v_max, ..limited }
     }
 
@@ -215,14 +219,15 @@ impl Family {
     pub(super) fn at_duration(&self, t: f64, on_island: bool) -> Extremal {
         let e = self.parameter_at_duration(t);
         let extremal = match self.island {
-            Some((first, last)) if on_island => return self.at(e.clamp(first, last)),
-            _ => self.at(e.max(self.start)),
+            Some((first, last)) if on_island => return self.at(between(e, first, last)),
+            _ => self.at(larger(e, self.start)),
         };
-        if extremal.w <= self.v_max {
+        // Where the acceleration stays above zero the velocity rises throughout, and w is never reached.
+        if extremal.e < 0.0 || extremal.w <= self.v_max {
             return extremal;
         }
         let mut limited = self.at_velocity_limit();
-        limited.lengthen((t - limited.t).max(0.0));
+        limited.lengthen(larger(t - limited.t, 0.0));
         limited
     }
 
@@ -237,7 +242,7 @@ impl Family {
         let (mut x, mut n) = (0.5 * (s + self.c / s), 0.5 * (s - self.c / s));
         if x > self.a_max {
             x = self.a_max;
-            n = sqrt((x * t - self.c).max(0.0)) - x;
+            n = sqrt(larger(x * t - self.c, 0.0)) - x;
         }
         if n <= self.drop {
             return n;
@@ -253,11 +258,11 @@ impl Family {
     }
 
     /// The first motion beyond `from` on the main arc that gets as far as `p`; `from` itself gets less far.
-    pub(super) fn first_reaching(&self, p: f64, from: &Extremal) -> Extremal {
-        if from.e < 0.0 && from.slope > 0.0 {
-            if let Some(extremal) = self.first_on_hump(p, from, 0.0) {
-                return extremal;
-            }
+    pub(super) fn first_reaching(&self, p: f64, from: &Extremal, resolution: f64) -> Extremal {
+        if from.e < 0.0
+            && let Some(extremal) = self.first_on_hump(p, from, 0.0, resolution)
+        {
+            return extremal;
         }
         let mut highest = f64::INFINITY;
         if self.v_max < f64::INFINITY {
@@ -271,13 +276,18 @@ impl Family {
         if let Some(saturated) = self.both_saturated(p, highest) {
             return saturated;
         }
-        self.solve(p, from.e, highest, self.bound(p).min(highest))
+        self.solve(p, from.e, highest, smaller(self.bound(p), highest))
     }
 
     /// The first motion beyond `from` on the island that gets as far as `p`, if there is one; `from` itself gets less far.
-    pub(super) fn first_reaching_on_island(&self, p: f64, from: &Extremal) -> Option<Extremal> {
+    pub(super) fn first_reaching_on_island(
+        &self,
+        p: f64,
+        from: &Extremal,
+        resolution: f64,
+    ) -> Option<Extremal> {
         let (_, last) = self.island?;
-        if let Some(extremal) = self.first_on_hump(p, from, last) {
+        if let Some(extremal) = self.first_on_hump(p, from, last, resolution) {
             return Some(extremal);
         }
         let end = self.at(last);
@@ -286,28 +296,30 @@ impl Family {
 
     /// Before the displacement falls and rises for good it may rise once, with the acceleration above zero throughout.
     /// The first motion that gets as far as `p` on that rise, between `from` and the parameter `last` ≤ 0.
-    fn first_on_hump(&self, p: f64, from: &Extremal, last: f64) -> Option<Extremal> {
+    fn first_on_hump(&self, p: f64, from: &Extremal, last: f64, resolution: f64) -> Option<Extremal> {
         if from.slope <= 0.0 {
             return None;
         }
-        let top = self.hump(from.e, last)?;
-        (self.at(top).p >= p).then(|| self.solve(p, from.e, top, 0.5 * (from.e + top)))
+        let top = self.at(self.hump(from.e, last)?);
+        if p > top.p + resolution {
+            return None;
+        }
+        // At the top two arrivals merge into one, and rounding must not lose both.
+        let p = smaller(p, top.p - resolution);
+        Some(self.solve(p, from.e, top.e, 0.5 * (from.e + top.e)))
     }
 
     /// Where between two parameters ≤ 0 the displacement has its first maximum.
     fn hump(&self, first: f64, last: f64) -> Option<f64> {
-        let inside = |e: f64| (e > first && e <= last).then_some(e);
         // Peak at its limit: slope n² + n a_max/2 + v⁺ = 0, the root from above to below zero.
-        let border = -sqrt((self.a_max * self.a_max - self.c).max(0.0));
+        let border = -sqrt(larger(self.a_max * self.a_max - self.c, 0.0));
         if first < border {
             let half = self.a_max / 4.0;
             let discriminant = half * half - self.v_last;
             if discriminant > 0.0 {
                 let n = -half - sqrt(discriminant);
-                if n <= border {
-                    if let Some(n) = inside(n) {
-                        return Some(n);
-                    }
+                if n <= border && n > first && n <= last {
+                    return Some(n);
                 }
             }
         }
@@ -318,13 +330,14 @@ impl Family {
             return None;
         }
         let s = self.c / sqrt(sqrt(discriminant) - 2.0 * v);
-        inside(0.5 * (s - self.c / s))
+        let n = 0.5 * (s - self.c / s);
+        (n > first && n <= last).then_some(n)
     }
 
     /// Where peak and valley are both at their limits the displacement is quadratic in w.
     fn both_saturated(&self, p: f64, highest: f64) -> Option<Extremal> {
         let (a, m) = (self.a_max, self.drop);
-        let y = (m * m).max(a * a - self.c);
+        let y = larger(m * m, a * a - self.c);
         let e = 0.5 * (m + y / m);
         if !(e < highest && e < f64::INFINITY) || self.at(e).p > p {
             return None;
@@ -333,8 +346,8 @@ impl Family {
         let linear = 0.5 * (a + m);
         let constant =
             0.5 * (self.v_first * (a - self.v_first / a) + self.v_last * (m - self.v_last / m)) + self.k - p;
-        let w = -2.0 * constant / (linear + sqrt((linear * linear - 4.0 * quadratic * constant).max(0.0)));
-        Some(self.at((0.5 * (m + (w - self.v_last) / m)).clamp(e, highest)))
+        let w = -2.0 * constant / (linear + sqrt(larger(linear * linear - 4.0 * quadratic * constant, 0.0)));
+        Some(self.at(between(0.5 * (m + (w - self.v_last) / m), e, highest)))
     }
 
     /// A parameter ≥ 0 beyond which the displacement is above `p`, within a small factor of the least.
@@ -357,7 +370,7 @@ impl Family {
             let n = 0.5 * (s - self.c / s);
             y = n * n;
         }
-        let y = y.max(-self.v_first - self.v_last);
+        let y = larger(y, -self.v_first - self.v_last);
         self.parameter(y, sqrt(y))
     }
 
@@ -366,9 +379,12 @@ impl Family {
     /// From the right of the root Newton's method needs no bracket where the displacement is convex; the bracket is
     /// for humps and rounding.
     fn solve(&self, p: f64, mut low: f64, mut high: f64, start: f64) -> Extremal {
-        let mut now = self.at(start.max(low));
+        let mut now = self.at(larger(start, low));
         for _ in 0..MAX_STEPS {
             let excess = now.p - p;
+            if excess.abs() <= ROUNDING * p.abs() {
+                break;
+            }
             if excess > 0.0 {
                 high = now.e;
             } else {
@@ -392,8 +408,8 @@ impl Family {
     /// Peak, valley and holds in the order of time.
     pub(super) fn shape(&self, extremal: &Extremal) -> Shape {
         let Extremal { x, n, .. } = *extremal;
-        let hold_x = (extremal.t_peak - 2.0 * x).max(0.0);
-        let hold_n = (2.0 * (extremal.e - n)).max(0.0);
+        let hold_x = larger(extremal.t_peak - 2.0 * x, 0.0);
+        let hold_n = larger(2.0 * (extremal.e - n), 0.0);
         let (cruise, velocity) = (extremal.cruise, extremal.w);
         if self.reversed {
             Shape { peak: n, peak_hold: hold_n, cruise, velocity, valley: x, valley_hold: hold_x }
@@ -411,11 +427,5 @@ impl Extremal {
         self.t += time;
         self.p += self.w * time;
         self.slope = self.w;
-    }
-
-    /// Whether the acceleration passes through zero between peak and valley, so that a cruise fits in.
-    #[inline]
-    pub(super) fn cruises(&self) -> bool {
-        self.n >= 0.0
     }
 }

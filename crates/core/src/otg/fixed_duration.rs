@@ -3,15 +3,14 @@
 //! Where both extreme motions pass through zero acceleration, so do all between them, with a cruise: one unknown, its velocity. Otherwise the motion
 //! is a weighted mean of the two extreme ones, which keeps every limit that both keep.
 
-use super::extremal::{Family, Problem, Shape};
-use super::third_order::{Arrival, Direction, Span, ThirdOrder};
+use super::extremal::{Problem, Shape};
+use super::number::{SIXTH, larger, smaller};
+use super::profile::{Point, Profile};
+use super::third_order::Arrival;
 use crate::math::float::sqrt;
 
-/// Most pieces of a motion: two extreme motions of seven pieces each have at most twelve inner borders.
-pub(super) const MAX_PIECES: usize = 13;
-
 /// A piece of constant jerk.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Piece {
     pub(super) duration: f64,
     pub(super) jerk: f64,
@@ -19,81 +18,146 @@ pub(super) struct Piece {
     pub(super) acceleration: f64,
 }
 
-/// A motion as pieces of constant jerk.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Pieces {
-    list: [Piece; MAX_PIECES],
-    len: usize,
-    /// The piece at constant velocity, and the velocity.
-    cruise: Option<(usize, f64)>,
+impl Piece {
+    const NONE: Self = Self::new(0.0, 0.0, 0.0);
+
+    #[inline]
+    const fn new(duration: f64, jerk: f64, acceleration: f64) -> Self {
+        Self { duration, jerk, acceleration }
+    }
 }
 
-impl Pieces {
-    fn new() -> Self {
-        Self { list: [Piece::default(); MAX_PIECES], len: 0, cruise: None }
+/// Where a motion is written to.
+///
+/// Motions are reckoned from the start up to the cruise, or to the middle if there is none, and back from the target from
+/// there, so that rounding errors do not grow with the duration.
+#[derive(Debug)]
+pub(super) struct Draft<'a> {
+    pub(super) profile: &'a mut Profile,
+    /// State so far, in the user's units.
+    pub(super) now: Point,
+    /// The state to be reached.
+    pub(super) target: Point,
+    /// The jerk limit.
+    pub(super) scale: f64,
+}
+
+impl Draft<'_> {
+    #[inline]
+    fn forward(&mut self, duration: f64, jerk: f64, acceleration: f64) {
+        self.profile.push_forward(&Piece::new(duration, jerk, acceleration), self.scale, &mut self.now);
     }
 
     #[inline]
-    fn push(&mut self, duration: f64, jerk: f64, acceleration: f64) {
-        if duration > 0.0 && self.len < MAX_PIECES {
-            self.list[self.len] = Piece { duration, jerk, acceleration };
-            self.len += 1;
+    fn cruise(&mut self, duration: f64, velocity: f64) {
+        self.now.v = velocity * self.scale;
+        self.forward(duration, 0.0, 0.0);
+    }
+
+    #[inline]
+    fn backward<const K: usize>(&mut self, pieces: &[Piece; K]) {
+        self.profile.push_backward(pieces, self.scale, self.target);
+    }
+
+    /// The motion of an extreme arrival.
+    pub(super) fn arrival(&mut self, problem: &Problem, arrival: &Arrival) {
+        let Arrival { sign, shape, .. } = *arrival;
+        let motion = Extreme { shape, sign, a0: problem.a0, af: problem.af };
+        let [rise, hold, fall, end_of_fall, last_hold, last_rise] = motion.pieces();
+        for piece in [rise, hold, fall] {
+            self.forward(piece.duration, piece.jerk, piece.acceleration);
+        }
+        if shape.cruise > 0.0 {
+            self.cruise(shape.cruise, sign * shape.velocity);
+        }
+        self.backward(&[end_of_fall, last_hold, last_rise]);
+    }
+
+    /// The motion of an arrival later than the earliest.
+    pub(super) fn later(&mut self, problem: &Problem, later: &Later) {
+        match later {
+            Later::Ramps(ramps) => self.ramps(problem, ramps),
+            Later::Mixture(mixture) => self.mixture(problem, mixture),
         }
     }
 
-    #[inline]
-    fn push_cruise(&mut self, duration: f64, velocity: f64) {
-        self.cruise = Some((self.len, velocity));
-        self.push(duration, 0.0, 0.0);
+    fn ramps(&mut self, problem: &Problem, ramps: &Ramps) {
+        let Problem { a0, af, .. } = *problem;
+        let Ramps { first: r1, second: r2, rest, w } = *ramps;
+        self.forward(r1.x - r1.sign * a0, r1.sign, a0);
+        self.forward(r1.hold, 0.0, r1.sign * r1.x);
+        self.forward(r1.x, -r1.sign, r1.sign * r1.x);
+        self.cruise(rest, w);
+        self.backward(&[
+            Piece::new(r2.x, -r2.sign, 0.0),
+            Piece::new(r2.hold, 0.0, -r2.sign * r2.x),
+            Piece::new(r2.x + r2.sign * af, r2.sign, -r2.sign * r2.x),
+        ]);
     }
 
-    /// The piece at constant velocity, if there is one, and the velocity.
-    #[inline]
-    pub(super) fn cruise(&self) -> Option<(usize, f64)> {
-        self.cruise
-    }
-
-    #[inline]
-    pub(super) fn as_slice(&self) -> &[Piece] {
-        &self.list[..self.len]
+    fn mixture(&mut self, problem: &Problem, mixture: &Mixture) {
+        let Problem { a0, af, .. } = *problem;
+        let up = Extreme { shape: mixture.up, sign: 1.0, a0, af };
+        let down = Extreme { shape: mixture.down, sign: -1.0, a0, af };
+        let (pieces, len) = mean(&up.all(), &down.all(), mixture.share);
+        let forward = len - len / 2;
+        for piece in &pieces[..forward] {
+            self.forward(piece.duration, piece.jerk, piece.acceleration);
+        }
+        let mut last = [Piece::NONE; BACKWARD];
+        for (place, piece) in last.iter_mut().zip(&pieces[forward..len]) {
+            *place = *piece;
+        }
+        self.backward(&last);
     }
 }
 
-/// The motion of an extreme arrival.
-pub(super) fn of_arrival(axis: &ThirdOrder, arrival: &Arrival) -> Pieces {
-    let Problem { a0, af, .. } = axis.problem;
-    match arrival.direction {
-        Direction::Up => extreme(&axis.up.shape(&arrival.extremal), 1.0, a0, af),
-        Direction::Down => extreme(&axis.down.shape(&arrival.extremal), -1.0, a0, af),
-    }
+/// A motion that arrives later than the earliest.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Later {
+    Ramps(Ramps),
+    Mixture(Mixture),
+}
+
+/// The weighted mean of the two extreme motions of a duration.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Mixture {
+    pub(super) up: Shape,
+    pub(super) down: Shape,
+    /// Weight of `up`, from 0 to 1.
+    pub(super) share: f64,
 }
 
 /// Rise to the peak, hold, fall, cruise, fall to the valley, hold, rise; all times `sign`.
-fn extreme(shape: &Shape, sign: f64, a0: f64, af: f64) -> Pieces {
-    let Shape { peak, peak_hold, cruise, velocity, valley, valley_hold } = *shape;
-    let mut pieces = Pieces::new();
-    pieces.push(peak - sign * a0, sign, a0);
-    pieces.push(peak_hold, 0.0, sign * peak);
-    if cruise > 0.0 {
-        pieces.push(peak, -sign, sign * peak);
-        pieces.push_cruise(cruise, sign * velocity);
-        pieces.push(valley, -sign, 0.0);
-    } else {
-        pieces.push(peak + valley, -sign, sign * peak);
-    }
-    pieces.push(valley_hold, 0.0, -sign * valley);
-    pieces.push(valley + sign * af, sign, -sign * valley);
-    pieces
+#[derive(Debug, Clone, Copy)]
+struct Extreme {
+    shape: Shape,
+    sign: f64,
+    a0: f64,
+    af: f64,
 }
 
-/// The motion that arrives after the time `t`, given the extreme motions of that duration.
-pub(super) fn between(axis: &ThirdOrder, t: f64, span: &Span) -> Pieces {
-    if span.up.cruises() && span.down.cruises() {
-        if let Some(pieces) = cruise(&axis.problem, t, span) {
-            return pieces;
-        }
+impl Extreme {
+    /// The pieces without the cruise, which lies between the third and the fourth.
+    #[inline]
+    fn pieces(&self) -> [Piece; 6] {
+        let Self { shape: Shape { peak, peak_hold, cruise, valley, valley_hold, .. }, sign, a0, af } = *self;
+        let (until_zero, from_zero) = if cruise > 0.0 { (peak, valley) } else { (peak + valley, 0.0) };
+        [
+            Piece::new(peak - sign * a0, sign, a0),
+            Piece::new(peak_hold, 0.0, sign * peak),
+            Piece::new(until_zero, -sign, sign * peak),
+            Piece::new(from_zero, -sign, 0.0),
+            Piece::new(valley_hold, 0.0, -sign * valley),
+            Piece::new(valley + sign * af, sign, -sign * valley),
+        ]
     }
-    mixture(axis, span)
+
+    /// All pieces in order.
+    fn all(&self) -> [Piece; 7] {
+        let [rise, hold, fall, end_of_fall, last_hold, last_rise] = self.pieces();
+        [rise, hold, fall, Piece::new(self.shape.cruise, 0.0, 0.0), end_of_fall, last_hold, last_rise]
+    }
 }
 
 /// From a velocity and acceleration to a cruise in the least time.
@@ -106,6 +170,15 @@ struct Ramp {
     hold: f64,
     duration: f64,
     displacement: f64,
+}
+
+/// Ramp, cruise at w, ramp; the second ramp as seen backwards in time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ramps {
+    first: Ramp,
+    second: Ramp,
+    rest: f64,
+    w: f64,
 }
 
 /// Where a ramp starts, and what it may do: all that does not depend on the cruise velocity.
@@ -129,7 +202,7 @@ impl RampFrom {
         let a = self.a;
         let (sign, limit) = if w >= self.straight { (1.0, self.a_max) } else { (-1.0, -self.a_min) };
         let v = self.v - sign * 0.5 * a * a; // where the first rise, drawn out, has zero acceleration
-        let gain = (sign * (w - v)).max(0.0);
+        let gain = larger(sign * (w - v), 0.0);
         let root = sqrt(gain);
         let (x, t) = if root <= limit { (root, 2.0 * root) } else { (limit, limit + gain / limit) };
         Ramp {
@@ -137,90 +210,78 @@ impl RampFrom {
             x,
             hold: t - 2.0 * x,
             duration: t - sign * a,
-            displacement: 0.5 * (v + w) * t - a * (sign * v + a * a / 6.0),
+            displacement: 0.5 * (v + w) * t - a * (sign * v + a * a * SIXTH),
         }
     }
 }
 
-/// Most steps of the search for the cruise velocity; the bracket is halved where Newton's method leaves it.
-const MAX_STEPS: usize = 80;
-/// As in the search for the extreme motions: the step after one this small is exact.
-const LAST_STEP: f64 = 1e-9;
+/// Most steps of the search for the cruise velocity. From a guess on the right side Newton's method converges in five or six; a search that
+/// takes longer is left to the mixture, which needs none.
+const MAX_STEPS: usize = 16;
+/// The step after one of size d is about d² |P″|/(2 P′), and with |P″| ≤ 1/x₁ + 1/x₂ and P′ ≥ (x₁ + x₂)/2 at most d²/(x₁ x₂).
+/// With d this fraction of x₁ x₂ it is rounding.
+const LAST_STEP: f64 = 1e-8;
+/// Displacements that differ by this fraction of their terms are one.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Ramp, cruise, ramp. The displacement grows with the cruise velocity w: dP/dw = t_cruise + (x₁ + x₂)/2.
-///
-/// None if the two ramps alone take longer than `t`: between the velocities of start and target two ramps may take longer
-/// than one.
-fn cruise(problem: &Problem, t: f64, span: &Span) -> Option<Pieces> {
-    let Problem { displacement, v0, a0, vf, af, a_max, a_min, .. } = *problem;
-    let first = RampFrom::new(v0, a0, a_max, a_min);
-    // The second ramp, seen backwards in time: limits and the sign of the acceleration change.
-    let second = RampFrom::new(vf, -af, -a_min, -a_max);
-    let (mut low, mut high) = (-span.down.w, span.up.w);
-    let reach = span.up.p + span.down.p;
-    let share = if reach > 0.0 { (displacement + span.down.p) / reach } else { 0.5 };
-    let mut w = low + (high - low) * share;
-    let (mut r1, mut r2) = (first.to(w), second.to(w));
-    for _ in 0..MAX_STEPS {
-        let rest = t - r1.duration - r2.duration;
-        let excess = r1.displacement + r2.displacement + rest * w - displacement;
-        if excess > 0.0 {
-            high = w;
-        } else {
-            low = w;
+impl Ramps {
+    /// The motion by ramp, cruise and ramp that arrives after the time `t`, if Newton's method finds one.
+    ///
+    /// The displacement grows with the cruise velocity w: dP/dw = t_cruise + (x₁ + x₂)/2. What is found is judged by itself: ramps that
+    /// fit into the time, and a velocity within its limits, are a motion, wherever the search came from.
+    pub(super) fn arriving(problem: &Problem, t: f64) -> Option<Self> {
+        let Problem { displacement, v0, a0, vf, af, v_max, v_min, a_max, a_min } = *problem;
+        let first = RampFrom::new(v0, a0, a_max, a_min);
+        // The second ramp, seen backwards in time: limits and the sign of the acceleration change.
+        let second = RampFrom::new(vf, -af, -a_min, -a_max);
+        let mut w = displacement / t;
+        for _ in 0..MAX_STEPS {
+            let (r1, r2) = (first.to(w), second.to(w));
+            let rest = t - r1.duration - r2.duration;
+            let excess = r1.displacement + r2.displacement + rest * w - displacement;
+            let terms = r1.displacement.abs() + r2.displacement.abs() + (rest * w).abs();
+            let slope = rest + 0.5 * (r1.x + r2.x);
+            if slope <= 0.0 {
+                return None;
+            }
+            let step = excess / slope;
+            w -= step;
+            if step.abs() <= LAST_STEP * (r1.x * r2.x) || excess.abs() <= ROUNDING * terms {
+                let (first, second) = (first.to(w), second.to(w));
+                let rest = t - first.duration - second.duration;
+                let good = rest >= 0.0 && v_min <= w && w <= v_max;
+                return good.then_some(Self { first, second, rest, w });
+            }
         }
-        let slope = rest + 0.5 * (r1.x + r2.x);
-        let mut next = w - excess / slope;
-        if !(next >= low && next <= high) {
-            next = 0.5 * (low + high);
-        }
-        let moved = (next - w).abs();
-        w = next;
-        r1 = first.to(w);
-        r2 = second.to(w);
-        if moved <= (LAST_STEP * (r1.x * r1.x).max(r2.x * r2.x)).max(2.0 * f64::EPSILON * w.abs()) {
-            break;
-        }
+        None
     }
-    let rest = t - r1.duration - r2.duration;
-    if !(rest >= 0.0) {
-        return None;
-    }
-    let mut pieces = Pieces::new();
-    pieces.push(r1.x - r1.sign * a0, r1.sign, a0);
-    pieces.push(r1.hold, 0.0, r1.sign * r1.x);
-    pieces.push(r1.x, -r1.sign, r1.sign * r1.x);
-    if rest > 0.0 {
-        pieces.push_cruise(rest, w);
-    }
-    pieces.push(r2.x, -r2.sign, 0.0);
-    pieces.push(r2.hold, 0.0, -r2.sign * r2.x);
-    pieces.push(r2.x + r2.sign * af, r2.sign, -r2.sign * r2.x);
-    Some(pieces)
 }
 
-/// The weighted mean of the two extreme motions that gets exactly as far as asked.
-fn mixture(axis: &ThirdOrder, span: &Span) -> Pieces {
-    let Problem { displacement, a0, af, .. } = axis.problem;
-    let motion = |family: &Family, extremal, sign| extreme(&family.shape(extremal), sign, a0, af);
-    let up = motion(&axis.up, &span.up, 1.0);
-    let down = motion(&axis.down, &span.down, -1.0);
-    let reach = span.up.p + span.down.p;
-    let share = if reach > 0.0 { ((displacement + span.down.p) / reach).clamp(0.0, 1.0) } else { 1.0 };
+/// Most pieces of a mixture: two motions of seven pieces each have at most twelve inner borders.
+const MAX_PIECES: usize = 13;
+/// As many of them as are reckoned back from the target.
+const BACKWARD: usize = 6;
+
+/// The mean of two motions of one duration, as pieces and their number.
+fn mean(up: &[Piece; 7], down: &[Piece; 7], share: f64) -> ([Piece; MAX_PIECES], usize) {
     let mean = |u: f64, d: f64| share * u + (1.0 - share) * d;
-
-    let (ups, downs) = (up.as_slice(), down.as_slice());
-    let mut pieces = Pieces::new();
+    let mut pieces = [Piece::NONE; MAX_PIECES];
+    let mut len = 0;
     let (mut i, mut k) = (0, 0);
     let (mut t_up, mut t_down) = (0.0, 0.0); // spent of the current piece of each
-    for _ in 0..MAX_PIECES {
-        let (Some(u), Some(d)) = (ups.get(i), downs.get(k)) else { break };
+    for _ in 0..up.len() + down.len() {
+        let (Some(u), Some(d)) = (up.get(i), down.get(k)) else { break };
         let (left_up, left_down) = (u.duration - t_up, d.duration - t_down);
-        let duration = left_up.min(left_down);
-        let acceleration = mean(u.acceleration + t_up * u.jerk, d.acceleration + t_down * d.jerk);
-        pieces.push(duration, mean(u.jerk, d.jerk), acceleration);
-        t_up += duration;
-        t_down += duration;
+        let duration = smaller(left_up, left_down);
+        if duration > 0.0 {
+            if let Some(place) = pieces.get_mut(len) {
+                let acceleration = mean(u.acceleration + t_up * u.jerk, d.acceleration + t_down * d.jerk);
+                *place = Piece::new(duration, mean(u.jerk, d.jerk), acceleration);
+                len += 1;
+            }
+            t_up += duration;
+            t_down += duration;
+        }
         if left_up <= left_down {
             (i, t_up) = (i + 1, 0.0);
         }
@@ -228,5 +289,5 @@ fn mixture(axis: &ThirdOrder, span: &Span) -> Pieces {
             (k, t_down) = (k + 1, 0.0);
         }
     }
-    pieces
+    (pieces, len)
 }

@@ -16,7 +16,10 @@ pub(super) struct Line<const N: usize> {
 /// Velocities and accelerations are parallel if what is left over is this fraction of their size.
 const PARALLEL: f64 = 1e-12;
 /// Displacements are parallel if what is left over is this fraction of their coordinates.
-const PARALLEL_POSITION: f64 = 64.0 * f64::EPSILON;
+const PARALLEL_POSITION: f64 = 1024.0 * f64::EPSILON;
+/// The displacement gives the direction if that leaves the others parallel but for this many roundings: a line that is planned
+/// anew on every cycle then leads to the target each time, and rounding does not add up.
+const EXACT_ENOUGH: f64 = 128.0;
 
 /// One of the vectors that must be parallel, with the size that its components' rounding errors are reckoned by.
 #[derive(Debug, Clone, Copy)]
@@ -37,7 +40,7 @@ impl<const N: usize> Line<N> {
             return Err(other);
         }
         let vectors = parallels(&axes, control);
-        let (chosen, reference) = largest(&vectors, members, first);
+        let (chosen, reference) = guide(&vectors, members, first);
         let along = vectors[chosen].value[reference];
         let direction: [f64; N] = core::array::from_fn(|axis| {
             if members[axis] && along != 0.0 { vectors[chosen].value[axis] / along } else { 0.0 }
@@ -88,19 +91,62 @@ fn acceleration_size(axis: &AxisInput) -> f64 {
     if limit < f64::INFINITY { limit.max(own) } else { own }
 }
 
-/// Vector and axis of the component that is largest for its size: it gives the direction most exactly.
-fn largest<const N: usize>(vectors: &[Parallel<N>; 5], members: &[bool; N], first: usize) -> (usize, usize) {
+/// Vector and axis that give the direction: the displacement if it is exact enough, otherwise the most exact.
+fn guide<const N: usize>(vectors: &[Parallel<N>; 5], members: &[bool; N], first: usize) -> (usize, usize) {
     let mut best = (0, first);
-    let mut share = 0.0;
+    let mut least = f64::INFINITY;
     for (index, vector) in vectors.iter().enumerate() {
-        for axis in (0..N).filter(|&axis| members[axis]) {
-            let own = vector.value[axis].abs() / vector.size[axis]; // NaN at 0/0, which is not larger
-            if own > share {
-                (share, best) = (own, (index, axis));
-            }
+        let reference = largest(vector, members, first);
+        let roundings = worst(vectors, vector, members, reference);
+        if roundings < least {
+            (least, best) = (roundings, (index, reference));
+        }
+        if index == 0 && roundings <= EXACT_ENOUGH {
+            break;
         }
     }
     best
+}
+
+/// The axis on which a vector is largest for its size.
+fn largest<const N: usize>(vector: &Parallel<N>, members: &[bool; N], first: usize) -> usize {
+    let mut best = first;
+    let mut share = 0.0;
+    for axis in (0..N).filter(|&axis| members[axis]) {
+        let own = vector.value[axis].abs() / vector.size[axis];
+        // Not true at 0/0.
+        if own > share {
+            (share, best) = (own, axis);
+        }
+    }
+    best
+}
+
+/// By how many roundings of their sizes the vectors may be off a direction that is taken from `guide`.
+///
+/// Component i of the direction is off by guide.sizeᵢ / guide.value roundings, and what a vector makes of that is to be held against its own
+/// size.
+fn worst<const N: usize>(
+    vectors: &[Parallel<N>; 5],
+    guide: &Parallel<N>,
+    members: &[bool; N],
+    reference: usize,
+) -> f64 {
+    let along = guide.value[reference].abs();
+    if along == 0.0 {
+        return f64::INFINITY;
+    }
+    let mut worst = 0.0;
+    for vector in vectors {
+        let scale = vector.value[reference].abs() / along;
+        for axis in (0..N).filter(|&axis| members[axis] && guide.size[axis] > 0.0) {
+            let off = scale * guide.size[axis] / vector.size[axis];
+            if off > worst {
+                worst = off;
+            }
+        }
+    }
+    worst
 }
 
 /// The problem along the line, within the tightest limits of its axes.

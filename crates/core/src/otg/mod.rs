@@ -15,6 +15,7 @@
 //! | `line` | phase synchronization: one scalar problem along the line |
 //! | `synchronize` | the instant at which all axes can arrive |
 //! | `profile`, `extrema`, `trajectory` | the answer |
+//! | `generator` | the answer one cycle at a time |
 //!
 //! Units: any, as long as all of one axis agree; time in seconds. The answer does not depend on them: no tolerance has a unit.
 //!
@@ -26,8 +27,10 @@ mod error;
 mod extrema;
 mod extremal;
 mod fixed_duration;
+mod generator;
 mod input;
 mod line;
+mod number;
 mod profile;
 mod second_order;
 mod synchronize;
@@ -37,12 +40,14 @@ mod validate;
 
 pub use error::{Error, Quantity};
 pub use extrema::PositionExtrema;
+pub use generator::{Generator, Output, Status};
 pub use input::{Control, Input, Limits, State, Synchronization};
 pub use profile::{MAX_PHASES, Order, Phase, Profile};
 pub use trajectory::{Sample, Trajectory};
 
 use axis::{Axis, AxisInput};
 use line::Line;
+use number::larger;
 use synchronize::{Demand, Plan, common_duration};
 
 /// Plans the motion from the current to the target state.
@@ -51,135 +56,134 @@ use synchronize::{Demand, Plan, common_duration};
 /// [`Error`] names axis, quantity and value. Valid input has a trajectory unless a zero limit keeps the axis from its target, a line was
 /// demanded that is none, or a position limit would be passed.
 pub fn calculate<const N: usize>(input: &Input<N>) -> Result<Trajectory<N>, Error> {
-    validate::validate(input)?;
-    let groups = Groups::new(input)?;
-    let mut error = None;
-    let axes: [Axis; N] = core::array::from_fn(|axis| {
-        let made = match &groups.line {
-            Some(line) if line.reference == axis => Axis::new(&line.scalar, axis),
-            _ if groups.planned[axis] => Axis::new(&AxisInput::of(input, axis), axis),
-            _ => Ok(Axis::coasting(&AxisInput::of(input, axis))),
-        };
-        made.unwrap_or_else(|e| {
-            error = error.or(Some(e));
-            Axis::coasting(&AxisInput::of(input, axis))
-        })
-    });
-    if let Some(error) = error {
-        return Err(error);
-    }
-    let mut plans: [Plan; N] = core::array::from_fn(|axis| Plan::new(&axes[axis]));
-    let duration_min = core::array::from_fn(|axis| plans[groups.leader(axis)].earliest);
-
-    let demand = Demand { min: input.duration_min.unwrap_or(0.0), step: input.duration_step.unwrap_or(0.0) };
-    let mut durations = [0.0; N];
-    let common = common_duration(&axes, &mut plans, &groups.together, &groups.early, &demand)?;
-    let mut duration = common;
-    for axis in 0..N {
-        durations[axis] = if groups.together[axis] {
-            common
-        } else if groups.alone[axis] {
-            let only = core::array::from_fn(|other| other == axis);
-            let own = common_duration(&axes, &mut plans, &only, &[false; N], &demand)?;
-            duration = own.max(duration);
-            own
-        } else {
-            plans[axis].earliest
-        };
-    }
-    let mut profiles: [Profile; N] =
-        core::array::from_fn(|axis| plans[axis].profile(&axes[axis], durations[axis]));
-    if let Some(line) = &groups.line {
-        spread(input, line, &groups.members, &mut profiles);
-    }
-    let trajectory = Trajectory { profiles, duration, duration_min, synchronized: groups.modes };
-    trajectory.check_positions(input)?;
+    let mut trajectory = Trajectory::default();
+    calculate_into(input, &mut trajectory)?;
     Ok(trajectory)
 }
 
-/// Gives the axes of a line their shares of the motion along it.
-fn spread<const N: usize>(
-    input: &Input<N>,
-    line: &Line<N>,
-    members: &[bool; N],
-    profiles: &mut [Profile; N],
-) {
-    let scalar = profiles[line.reference];
-    for axis in (0..N).filter(|&axis| members[axis]) {
-        let AxisInput { current, target, control, .. } = AxisInput::of(input, axis);
-        profiles[axis] = scalar.along(current, target, control, line.direction[axis]);
+/// As [`calculate`], into a trajectory that is there already: no large value is moved.
+///
+/// # Errors
+/// As [`calculate`]; the trajectory is then not one to be followed.
+pub fn calculate_into<const N: usize>(input: &Input<N>, trajectory: &mut Trajectory<N>) -> Result<(), Error> {
+    validate::validate(input)?;
+    let groups = Groups::new(input, &mut trajectory.synchronized)?;
+    let mut axes = [Axis::IDLE; N];
+    let mut plans = [Plan::AT_ONCE; N];
+    for axis in 0..N {
+        let own = AxisInput::of(input, axis);
+        let profile = &mut trajectory.profiles[axis];
+        let problem = match &groups.line {
+            Some(line) if line.reference == axis => &line.scalar,
+            _ => &own,
+        };
+        if matches!(groups.roles[axis], Role::Off | Role::Follower) {
+            profile.begin(own.current, Order::Third);
+        } else {
+            axes[axis].set(problem, axis, profile)?;
+            plans[axis].find_earliest(&axes[axis]);
+        }
+        trajectory.duration_min[axis] = plans[axis].earliest;
     }
+
+    let demand = Demand { min: input.duration_min.unwrap_or(0.0), step: input.duration_step.unwrap_or(0.0) };
+    trajectory.duration = common_duration(&axes, &mut plans, &groups.roles, &demand)?;
+    for axis in 0..N {
+        match groups.roles[axis] {
+            Role::Off | Role::Follower => continue,
+            Role::Alone => {
+                let only =
+                    core::array::from_fn(|other| if other == axis { Role::Together } else { Role::Off });
+                let duration = common_duration(&axes, &mut plans, &only, &demand)?;
+                trajectory.duration = larger(duration, trajectory.duration);
+            }
+            Role::Early | Role::Together => {}
+        }
+        axes[axis].write(&plans[axis].solution, &mut trajectory.profiles[axis]);
+    }
+    if let Some(line) = &groups.line {
+        spread(input, line, trajectory);
+    }
+    trajectory.check_positions(input)
+}
+
+/// Gives the axes of a line their shares of the motion along it.
+fn spread<const N: usize>(input: &Input<N>, line: &Line<N>, trajectory: &mut Trajectory<N>) {
+    let scalar = trajectory.profiles[line.reference];
+    let duration_min = trajectory.duration_min[line.reference];
+    for axis in (0..N).filter(|&axis| trajectory.synchronized[axis] == Synchronization::Phase) {
+        let AxisInput { current, target, control, .. } = AxisInput::of(input, axis);
+        trajectory.profiles[axis] = scalar.along(current, target, control, line.direction[axis]);
+        trajectory.duration_min[axis] = duration_min;
+    }
+}
+
+/// What an axis is in the synchronization.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Role {
+    /// Not planned.
+    Off,
+    /// Arrives at its own time.
+    Alone,
+    /// Arrives at its own time, which the others' is not before.
+    Early,
+    /// Arrives with the others.
+    Together,
+    /// Moves along the line, planned for the line's reference.
+    Follower,
 }
 
 /// Which axes arrive together, and how.
 struct Groups<const N: usize> {
+    roles: [Role; N],
     /// The line that phase-synchronized axes keep to.
     line: Option<Line<N>>,
-    /// Its axes.
-    members: [bool; N],
-    /// Axes that are planned themselves: all enabled ones but those that follow the line's reference.
-    planned: [bool; N],
-    /// Planned axes that arrive at the common instant.
-    together: [bool; N],
-    /// Planned axes that may arrive before it.
-    early: [bool; N],
-    /// Planned axes that are not synchronized.
-    alone: [bool; N],
-    /// What each axis in fact gets.
-    modes: [Synchronization; N],
 }
 
 impl<const N: usize> Groups<N> {
-    fn new(input: &Input<N>) -> Result<Self, Error> {
-        use Synchronization::{None as Alone, Phase, PhaseStrict, Time, TimeIfNecessary};
-        let asked = |axis: usize| input.synchronization[axis];
-        let phase = |axis: usize| input.enabled[axis] && matches!(asked(axis), Phase | PhaseStrict);
-        let mut members: [bool; N] = core::array::from_fn(phase);
-        let mut line = None;
-        if members.contains(&true) {
-            match Line::new(input, &members) {
-                Ok(found) => line = Some(found),
-                Err(axis) if (0..N).any(|i| members[i] && asked(i) == PhaseStrict) => {
-                    return Err(Error::NotCollinear { axis });
+    fn new(input: &Input<N>, modes: &mut [Synchronization; N]) -> Result<Self, Error> {
+        let mut groups = Self { roles: [Role::Off; N], line: None };
+        let mut members = [false; N];
+        for axis in (0..N).filter(|&axis| input.enabled[axis]) {
+            let at_rest = input.target.velocity[axis] == 0.0 && input.target.acceleration[axis] == 0.0;
+            groups.roles[axis] = match input.synchronization[axis] {
+                Synchronization::None => Role::Alone,
+                Synchronization::TimeIfNecessary if at_rest => Role::Early,
+                Synchronization::Time | Synchronization::TimeIfNecessary => Role::Together,
+                Synchronization::Phase | Synchronization::PhaseStrict => {
+                    members[axis] = true;
+                    Role::Follower
                 }
-                Err(_) => members = [false; N],
-            }
+            };
         }
-        let reference = line.as_ref().map(|line| line.reference);
-        let at_rest = |i: usize| input.target.velocity[i] == 0.0 && input.target.acceleration[i] == 0.0;
-        let modes = core::array::from_fn(|i| match asked(i) {
-            _ if !input.enabled[i] => Alone,
-            Phase | PhaseStrict => {
-                if members[i] {
-                    Phase
-                } else {
-                    Time
-                }
-            }
-            TimeIfNecessary => {
-                if at_rest(i) {
-                    Alone
-                } else {
-                    Time
-                }
-            }
-            Time => Time,
-            Alone => Alone,
+        if members.contains(&true) {
+            groups.find_line(input, &members)?;
+        }
+        *modes = groups.roles.map(|role| match role {
+            Role::Off | Role::Alone | Role::Early => Synchronization::None,
+            Role::Together => Synchronization::Time,
+            Role::Follower => Synchronization::Phase,
         });
-        let planned: [bool; N] =
-            core::array::from_fn(|i| input.enabled[i] && (!members[i] || reference == Some(i)));
-        let early: [bool; N] =
-            core::array::from_fn(|i| planned[i] && asked(i) == TimeIfNecessary && modes[i] == Alone);
-        let together = core::array::from_fn(|i| planned[i] && modes[i] != Alone);
-        let alone = core::array::from_fn(|i| planned[i] && modes[i] == Alone && !early[i]);
-        Ok(Self { line, members, planned, together, early, alone, modes })
+        if let Some(line) = &groups.line {
+            groups.roles[line.reference] = Role::Together;
+        }
+        Ok(groups)
     }
 
-    /// The axis that is planned for this one.
-    fn leader(&self, axis: usize) -> usize {
-        match &self.line {
-            Some(line) if self.members[axis] => line.reference,
-            _ => axis,
+    /// The line of these axes or, if there is none, time synchronization.
+    fn find_line(&mut self, input: &Input<N>, members: &[bool; N]) -> Result<(), Error> {
+        match Line::new(input, members) {
+            Ok(line) => self.line = Some(line),
+            Err(axis) => {
+                let strict = |axis: usize| input.synchronization[axis] == Synchronization::PhaseStrict;
+                if (0..N).any(|axis| members[axis] && strict(axis)) {
+                    return Err(Error::NotCollinear { axis });
+                }
+                for axis in (0..N).filter(|&axis| members[axis]) {
+                    self.roles[axis] = Role::Together;
+                }
+            }
         }
+        Ok(())
     }
 }

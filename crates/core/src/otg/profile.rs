@@ -2,6 +2,7 @@
 
 use super::fixed_duration::Piece;
 use super::input::Control;
+use super::number::{SIXTH, larger};
 
 /// Most phases of a profile: four that bring the axis inside its limits, and thirteen of the motion proper.
 pub const MAX_PHASES: usize = 17;
@@ -29,8 +30,8 @@ impl Phase {
         let Phase { position: p, velocity: v, acceleration: a, jerk: j, duration } = *self;
         Phase {
             duration: duration - time,
-            position: p + time * (v + time * (a / 2.0 + time * (j / 6.0))),
-            velocity: v + time * (a + time * (j / 2.0)),
+            position: p + time * (v + time * (0.5 * a + time * j * SIXTH)),
+            velocity: v + time * (a + 0.5 * time * j),
             acceleration: a + time * j,
             jerk: j,
         }
@@ -54,17 +55,17 @@ impl From<Point> for Phase {
 /// What a profile's control is: the derivative of position that may jump.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Order {
-    /// Velocity: acceleration and jerk are unlimited.
-    First,
-    /// Acceleration: jerk is unlimited.
-    Second,
     /// Jerk.
     #[default]
     Third,
+    /// Acceleration: jerk is unlimited.
+    Second,
+    /// Velocity: acceleration and jerk are unlimited.
+    First,
 }
 
 /// The motion of one axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Profile {
     phases: [Phase; MAX_PHASES],
     len: usize,
@@ -77,17 +78,29 @@ pub struct Profile {
     order: Order,
 }
 
+impl PartialEq for Profile {
+    fn eq(&self, other: &Self) -> bool {
+        (self.phases(), self.brake_len, self.end, self.order)
+            == (other.phases(), other.brake_len, other.end, other.order)
+    }
+}
+
 impl Profile {
-    /// No motion: the axis is at `end` from the start.
-    pub(super) fn ending_at(end: Point, order: Order) -> Self {
-        Self {
-            phases: [Phase::default(); MAX_PHASES],
-            len: 0,
-            brake_len: 0,
-            duration: 0.0,
-            end: end.into(),
-            order,
-        }
+    /// A profile without motion.
+    pub(super) const EMPTY: Self = Self {
+        phases: [Phase { duration: 0.0, position: 0.0, velocity: 0.0, acceleration: 0.0, jerk: 0.0 };
+            MAX_PHASES],
+        len: 0,
+        brake_len: 0,
+        duration: 0.0,
+        end: Phase { duration: 0.0, position: 0.0, velocity: 0.0, acceleration: 0.0, jerk: 0.0 },
+        order: Order::Third,
+    };
+
+    /// Begins anew, with a motion that will end at `end`.
+    pub(super) fn begin(&mut self, end: Point, order: Order) {
+        (self.len, self.brake_len, self.duration) = (0, 0, 0.0);
+        (self.end, self.order) = (end.into(), order);
     }
 
     /// Sets the state reached.
@@ -101,32 +114,38 @@ impl Profile {
     pub(super) fn push_forward(&mut self, piece: &Piece, scale: f64, now: &mut Point) {
         let &Piece { duration: t, .. } = piece;
         let (a, j) = (piece.acceleration * scale, piece.jerk * scale);
-        if t > 0.0 && self.len < MAX_PHASES {
-            self.phases[self.len] =
-                Phase { duration: t, position: now.p, velocity: now.v, acceleration: a, jerk: j };
-            self.len += 1;
-            self.duration += t;
-            now.p += t * (now.v + t * (0.5 * a + t * (j / 6.0)));
+        if t > 0.0 {
+            self.push(Phase { duration: t, position: now.p, velocity: now.v, acceleration: a, jerk: j });
+            now.p += t * (now.v + t * (0.5 * a + t * j * SIXTH));
             now.v += t * (a + 0.5 * t * j);
-            now.a = a + t * j;
         }
     }
 
-    /// Appends pieces that lead to the state `end`, reckoned back from there. Pieces have a duration.
+    /// Appends pieces that lead to the state `end`, reckoned back from there.
     #[inline]
-    pub(super) fn extend_backward(&mut self, pieces: &[Piece], scale: f64, end: Point) {
-        let first = self.len;
-        let mut now = end;
-        for (index, piece) in pieces.iter().enumerate().rev() {
-            let &Piece { duration: t, .. } = piece;
+    pub(super) fn push_backward<const K: usize>(&mut self, pieces: &[Piece; K], scale: f64, end: Point) {
+        let mut phases = [Phase::default(); K];
+        let Point { mut p, mut v, .. } = end;
+        for (phase, piece) in phases.iter_mut().zip(pieces).rev() {
+            let t = larger(piece.duration, 0.0);
             let (a, j) = (piece.acceleration * scale, piece.jerk * scale);
-            let v = now.v - t * (a + 0.5 * t * j);
-            now = Point { p: now.p - t * (v + t * (0.5 * a + t * (j / 6.0))), v, a };
-            if let Some(phase) = self.phases.get_mut(first + index) {
-                *phase = Phase { duration: t, position: now.p, velocity: now.v, acceleration: a, jerk: j };
-                self.len += 1;
-                self.duration += t;
+            v -= t * (a + 0.5 * t * j);
+            p -= t * (v + t * (0.5 * a + t * j * SIXTH));
+            *phase = Phase { duration: t, position: p, velocity: v, acceleration: a, jerk: j };
+        }
+        for phase in phases {
+            if phase.duration > 0.0 {
+                self.push(phase);
             }
+        }
+    }
+
+    #[inline]
+    fn push(&mut self, phase: Phase) {
+        if let Some(place) = self.phases.get_mut(self.len) {
+            *place = phase;
+            self.len += 1;
+            self.duration += phase.duration;
         }
     }
 

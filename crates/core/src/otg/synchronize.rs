@@ -1,8 +1,9 @@
 //! All axes together: the instant at which they arrive. See `docs/otg.md`, section 9.
 
-use super::axis::{Axis, Reach, Solution};
+use super::Role;
+use super::axis::{Axis, Solution};
 use super::error::Error;
-use super::profile::Profile;
+use super::number::larger;
 use crate::math::float::ceil;
 
 /// When an axis arrives, and how.
@@ -10,9 +11,7 @@ use crate::math::float::ceil;
 pub(super) struct Plan {
     /// The least time at which it can arrive, not before the last instant it was asked for.
     pub(super) earliest: f64,
-    solution: Solution,
-    /// Set where it has to arrive later than that.
-    reach: Option<Reach>,
+    pub(super) solution: Solution,
 }
 
 /// What is asked of the common duration.
@@ -29,60 +28,50 @@ const SAME: f64 = 1e-15;
 impl Demand {
     /// The first duration from `t` on that meets the demand.
     fn next(&self, t: f64) -> f64 {
-        let t = t.max(self.min);
+        let t = larger(t, self.min);
         if self.step > 0.0 { self.step * ceil(t / self.step * (1.0 - SAME)) } else { t }
     }
 }
 
 impl Plan {
-    pub(super) fn new(axis: &Axis) -> Self {
-        let (earliest, solution) = axis.earliest(0.0);
-        Self { earliest, solution, reach: None }
+    /// The plan of an axis that is where it is to be.
+    pub(super) const AT_ONCE: Self = Self { earliest: 0.0, solution: Solution::AtOnce };
+
+    /// Has the axis arrive as early as it can.
+    pub(super) fn find_earliest(&mut self, axis: &Axis) {
+        self.earliest = axis.earliest(0.0, &mut self.solution);
     }
 
-    /// Has the axis arrive at `t` or, where it cannot, says when it can next.
-    fn arrive(&mut self, axis: &Axis, t: f64) -> Result<(), f64> {
-        self.reach = None;
+    /// Has the axis arrive at `t`, where it can; otherwise as soon after it as it can. Says when.
+    ///
+    /// The solution for the earliest time is kept as long as it serves, so that the axis that sets the duration keeps its own.
+    fn arrive(&mut self, axis: &Axis, t: f64) -> f64 {
         if self.earliest >= t * (1.0 - SAME) {
-            return if self.earliest <= t { Ok(()) } else { Err(self.earliest) };
+            return self.earliest;
         }
-        self.reach = axis.reachable(t);
-        if self.reach.is_none() {
-            (self.earliest, self.solution) = axis.earliest(t);
-            if self.earliest > t {
-                return Err(self.earliest);
-            }
+        match axis.at(t) {
+            Some(solution) => self.solution = solution,
+            None => self.earliest = axis.earliest(t, &mut self.solution),
         }
-        Ok(())
-    }
-
-    /// The axis' motion for the common duration `t`.
-    pub(super) fn profile(&self, axis: &Axis, t: f64) -> Profile {
-        match &self.reach {
-            Some(reach) => axis.profile_at(t, reach),
-            None => axis.profile(&self.solution),
-        }
+        larger(self.earliest, t)
     }
 }
 
-/// The first duration at which every axis of `together` can arrive and those of `early` have arrived.
+/// The first duration at which all axes that arrive together can, and those that may arrive early have arrived.
 ///
 /// Each round moves the duration to the end of an interval in which some axis cannot arrive. An axis has two of these at most
 /// after its least duration, so that `3 N + 3` rounds are enough; with a step each round passes one too.
 pub(super) fn common_duration<const N: usize>(
     axes: &[Axis; N],
     plans: &mut [Plan; N],
-    together: &[bool; N],
-    early: &[bool; N],
+    roles: &[Role; N],
     demand: &Demand,
 ) -> Result<f64, Error> {
     let mut t = 0.0_f64;
     let mut last = 0;
-    for axis in (0..N).filter(|&axis| together[axis] || early[axis]) {
-        if plans[axis].earliest.is_nan() {
-            return Err(Error::OutOfRange { axis });
-        }
-        if plans[axis].earliest > t {
+    for axis in 0..N {
+        let counts = matches!(roles[axis], Role::Together | Role::Early);
+        if counts && (plans[axis].earliest > t || plans[axis].earliest.is_nan()) {
             (t, last) = (plans[axis].earliest, axis);
         }
     }
@@ -92,9 +81,10 @@ pub(super) fn common_duration<const N: usize>(
             break;
         }
         let mut settled = true;
-        for axis in (0..N).filter(|&axis| together[axis]) {
-            if let Err(later) = plans[axis].arrive(&axes[axis], t) {
-                (t, last, settled) = (later, axis, false);
+        for axis in (0..N).filter(|&axis| roles[axis] == Role::Together) {
+            let arrival = plans[axis].arrive(&axes[axis], t);
+            if arrival > t {
+                (t, last, settled) = (arrival, axis, false);
                 break;
             }
         }

@@ -3,41 +3,43 @@
 //! For a fixed duration T the displacements that can be reached form one interval, [P⁻(T), P⁺(T)]. So T is possible exactly where the interval
 //! holds the displacement asked for, the least duration is the first such T, and the others are found by the same test.
 
-use super::extremal::{Extremal, Family, Problem};
+use super::extremal::{Extremal, Family, Problem, Shape};
+use super::fixed_duration::{Later, Mixture, Ramps};
+use super::number::larger;
 
-/// The axis' problem with the motions that get farthest either way.
+/// The axis' problem, ready to be asked when the axis can arrive.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ThirdOrder {
     pub(super) problem: Problem,
-    /// Farthest forward.
-    pub(super) up: Family,
-    /// Farthest backward, as the farthest forward of the mirrored problem.
-    pub(super) down: Family,
+    /// The motions that get farthest forward. Those that get farthest backward are made from the mirrored problem where
+    /// they are needed.
+    up: Family,
     /// The possible times begin here for good; one motion only takes this time.
     start: Extremal,
-    /// Uncertainty of the displacement, from the rounding of the coordinates.
+    /// Uncertainty of the displacement: rounding of its terms, and of the coordinates.
     resolution: f64,
 }
 
-/// Which way an extreme motion goes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Direction {
-    Up,
-    Down,
-}
-
-/// An extreme motion that meets the target.
+/// An extreme motion that meets the target: when, which way, and how.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Arrival {
-    pub(super) direction: Direction,
-    pub(super) extremal: Extremal,
+    pub(super) t: f64,
+    pub(super) sign: f64,
+    pub(super) shape: Shape,
 }
 
 /// The two extreme motions of one duration; backward as seen in the mirror.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Span {
-    pub(super) up: Extremal,
-    pub(super) down: Extremal,
+struct Span {
+    up: Extremal,
+    down: Extremal,
+}
+
+/// Both families.
+#[derive(Debug, Clone, Copy)]
+struct Families {
+    up: Family,
+    down: Family,
 }
 
 /// Where a displacement lies with regard to a span.
@@ -53,15 +55,12 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 impl ThirdOrder {
     /// `resolution`: how far the displacement may be off because its ends are large.
     pub(super) fn new(problem: Problem, resolution: f64) -> Self {
+        let Problem { v0, a0, vf, af, .. } = problem;
         let up = Family::new(&problem);
-        let down = Family::new(&problem.mirror());
         let start = up.at_start();
-        let terms = problem.v0.abs()
-            + problem.vf.abs()
-            + problem.a0 * problem.a0
-            + problem.af * problem.af
-            + start.x * start.x;
-        Self { problem, up, down, start, resolution: resolution + ROUNDING * terms * start.t }
+        let terms = v0.abs() + vf.abs() + a0 * a0 + af * af + start.x * start.x;
+        let resolution = resolution + ROUNDING * terms * start.t;
+        Self { problem, up, start, resolution }
     }
 
     /// The first arrival at or after the time `from`, at which the axis cannot arrive (or `from` is 0).
@@ -70,55 +69,99 @@ impl ThirdOrder {
             return arrival;
         }
         let p = self.problem.displacement;
-        let span = if from <= self.start.t {
-            Span { up: self.start, down: self.down.at_start() }
+        if from > self.start.t {
+            let families = self.families();
+            let span = families.span(from, false);
+            return match self.side(&span) {
+                Side::Inside => Arrival::up(&self.up, &span.up),
+                Side::Above => self.up_to(&span.up),
+                Side::Below => self.down_to(&families.down, &span.down),
+            };
+        }
+        // At the start both families have the same motion.
+        if p > self.start.p + self.resolution {
+            self.up_to(&self.start)
+        } else if p < self.start.p - self.resolution {
+            let down = self.down();
+            self.down_to(&down, &down.at_start())
         } else {
-            self.span(from, false)
-        };
-        match self.side(&span) {
-            Side::Inside => Arrival::up(span.up),
-            Side::Above => Arrival::up(self.up.first_reaching(p, &span.up)),
-            Side::Below => Arrival::down(self.down.first_reaching(-p, &span.down)),
+            Arrival::up(&self.up, &self.start)
         }
     }
 
-    fn earliest_on_island(&self, from: f64) -> Option<Arrival> {
-        let p = self.problem.displacement;
-        let meets =
-            |extremal: &Extremal, p: f64| from <= extremal.t && (p - extremal.p).abs() <= self.resolution;
-        match (self.up.island(), self.down.island()) {
-            (Some((first, last)), Some(_)) if from <= last.t => {
-                let span = self.span(from.max(first.t), true);
-                match self.side(&span) {
-                    Side::Inside => Some(Arrival::up(span.up)),
-                    Side::Above => self.up.first_reaching_on_island(p, &span.up).map(Arrival::up),
-                    Side::Below => self.down.first_reaching_on_island(-p, &span.down).map(Arrival::down),
-                }
-            }
-            // An island of one motion only, which rounding has hidden from one of the families.
-            (Some((only, _)), None) if meets(&only, p) => Some(Arrival::up(only)),
-            (None, Some((only, _))) if meets(&only, -p) => Some(Arrival::down(only)),
-            _ => None,
+    /// The motion that arrives after the time `t`, if there is one.
+    pub(super) fn at(&self, t: f64) -> Option<Later> {
+        if let Some(ramps) = Ramps::arriving(&self.problem, t) {
+            return Some(Later::Ramps(ramps));
         }
-    }
-
-    /// The extreme motions of duration `t`, if the axis can arrive then.
-    pub(super) fn reachable(&self, t: f64) -> Option<Span> {
+        let families = self.families();
         let on_island = t < self.start.t;
         if on_island {
-            let ((first, last), _) = (self.up.island()?, self.down.island()?);
+            let (first, last) = families.island()?;
             if t < first.t || t > last.t {
                 return None;
             }
         }
-        let span = self.span(t, on_island);
+        let Span { up, down } = families.span(t, on_island);
         let p = self.problem.displacement;
-        (p <= span.up.p && -p <= span.down.p).then_some(span)
+        let reach = up.p + down.p;
+        let possible = p <= up.p && -p <= down.p;
+        possible.then(|| {
+            let share = if reach > 0.0 { (p + down.p) / reach } else { 1.0 };
+            Later::Mixture(Mixture { up: families.up.shape(&up), down: families.down.shape(&down), share })
+        })
     }
 
-    #[inline]
-    fn span(&self, t: f64, on_island: bool) -> Span {
-        Span { up: self.up.at_duration(t, on_island), down: self.down.at_duration(t, on_island) }
+    /// Before the times that are possible for good there may be an interval of possible ones, an island, if the acceleration need not
+    /// change its sign.
+    fn earliest_on_island(&self, from: f64) -> Option<Arrival> {
+        let Problem { displacement: p, a0, af, .. } = self.problem;
+        if a0 * af <= 0.0 || from >= self.start.t {
+            return None;
+        }
+        let families = self.families();
+        if let Some((first, last)) = families.island() {
+            if from > last.t {
+                return None;
+            }
+            let span = families.span(larger(from, first.t), true);
+            return match self.side(&span) {
+                Side::Inside => Some(Arrival::up(&families.up, &span.up)),
+                Side::Above => {
+                    let extremal = families.up.first_reaching_on_island(p, &span.up, self.resolution)?;
+                    Some(Arrival::up(&families.up, &extremal))
+                }
+                Side::Below => {
+                    let extremal = families.down.first_reaching_on_island(-p, &span.down, self.resolution)?;
+                    Some(Arrival::down(&families.down, &extremal))
+                }
+            };
+        }
+        // An island of one motion only, which rounding has hidden from one of the families.
+        let meets =
+            |extremal: &Extremal, p: f64| from <= extremal.t && (p - extremal.p).abs() <= self.resolution;
+        match (families.up.island(), families.down.island()) {
+            (Some((only, _)), None) if meets(&only, p) => Some(Arrival::up(&families.up, &only)),
+            (None, Some((only, _))) if meets(&only, -p) => Some(Arrival::down(&families.down, &only)),
+            _ => None,
+        }
+    }
+
+    fn up_to(&self, from: &Extremal) -> Arrival {
+        let extremal = self.up.first_reaching(self.problem.displacement, from, self.resolution);
+        Arrival::up(&self.up, &extremal)
+    }
+
+    fn down_to(&self, down: &Family, from: &Extremal) -> Arrival {
+        Arrival::down(down, &down.first_reaching(-self.problem.displacement, from, self.resolution))
+    }
+
+    fn down(&self) -> Family {
+        Family::new(&self.problem.mirror())
+    }
+
+    fn families(&self) -> Families {
+        Families { up: self.up, down: self.down() }
     }
 
     fn side(&self, span: &Span) -> Side {
@@ -133,12 +176,23 @@ impl ThirdOrder {
     }
 }
 
-impl Arrival {
-    fn up(extremal: Extremal) -> Self {
-        Self { direction: Direction::Up, extremal }
+impl Families {
+    /// First and last motion of the island, if both families have one.
+    fn island(&self) -> Option<(Extremal, Extremal)> {
+        self.down.island().and(self.up.island())
     }
 
-    fn down(extremal: Extremal) -> Self {
-        Self { direction: Direction::Down, extremal }
+    fn span(&self, t: f64, on_island: bool) -> Span {
+        Span { up: self.up.at_duration(t, on_island), down: self.down.at_duration(t, on_island) }
+    }
+}
+
+impl Arrival {
+    fn up(family: &Family, extremal: &Extremal) -> Self {
+        Self { t: extremal.t, sign: 1.0, shape: family.shape(extremal) }
+    }
+
+    fn down(family: &Family, extremal: &Extremal) -> Self {
+        Self { t: extremal.t, sign: -1.0, shape: family.shape(extremal) }
     }
 }

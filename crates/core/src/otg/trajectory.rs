@@ -35,6 +35,18 @@ pub struct Trajectory<const N: usize> {
     pub(super) synchronized: [Synchronization; N],
 }
 
+impl<const N: usize> Default for Trajectory<N> {
+    /// No motion: every axis at rest at zero.
+    fn default() -> Self {
+        Self {
+            profiles: [Profile::EMPTY; N],
+            duration: 0.0,
+            duration_min: [0.0; N],
+            synchronized: [Synchronization::None; N],
+        }
+    }
+}
+
 impl<const N: usize> Trajectory<N> {
     /// Seconds until every axis has reached its target.
     #[must_use]

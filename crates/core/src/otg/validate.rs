@@ -2,6 +2,7 @@
 
 use super::error::{Error, Quantity};
 use super::input::{Control, Input};
+use super::number::{larger, smaller};
 use crate::math::float::sqrt;
 
 /// How far, relative to the limit, a target may lie beyond a limit and still be taken as lying on it: rounding only.
@@ -18,13 +19,35 @@ pub(super) fn validate<const N: usize>(input: &Input<N>) -> Result<(), Error> {
         return Err(Error::BadDuration { value: 0.0 });
     }
     for axis in 0..N {
-        if input.enabled[axis] {
+        if input.enabled[axis] && !is_plain(input, axis) {
             states(input, axis)?;
             limits(input, axis)?;
             target(input, axis)?;
         }
     }
     Ok(())
+}
+
+/// Whether an axis is beyond doubt, in as few operations as that takes; the checks below say what is wrong with others, if anything.
+fn is_plain<const N: usize>(input: &Input<N>, axis: usize) -> bool {
+    let Input { current, target, limits: l, .. } = input;
+    let (p, v, a, j) =
+        (target.position[axis], target.velocity[axis], target.acceleration[axis], l.jerk_max[axis]);
+    // Infinite or not a number if one of them is.
+    let sum = current.position[axis] + current.velocity[axis] + current.acceleration[axis] + p + v + a;
+    let on_the_way = v - 0.5 * a * a.abs() / j;
+    let signs = (j > 0.0)
+        & (l.acceleration_min[axis] < 0.0)
+        & (l.acceleration_max[axis] > 0.0)
+        & (l.velocity_min[axis] <= 0.0)
+        & (l.velocity_max[axis] >= 0.0)
+        & (l.position_min[axis] <= l.position_max[axis]);
+    let acceleration = (l.acceleration_min[axis] <= a) & (a <= l.acceleration_max[axis]);
+    let velocity = (l.velocity_min[axis] <= smaller(v, on_the_way))
+        & (larger(v, on_the_way) <= l.velocity_max[axis])
+        & (l.position_min[axis] <= p)
+        & (p <= l.position_max[axis]);
+    sum.is_finite() & signs & acceleration & (velocity | (input.control[axis] == Control::Velocity))
 }
 
 fn states<const N: usize>(input: &Input<N>, axis: usize) -> Result<(), Error> {

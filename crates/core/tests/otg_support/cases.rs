@@ -86,6 +86,8 @@ fn scalar(random: &mut Random, distribution: Distribution, asymmetric: bool) -> 
             (s.v0, s.vf) = (some(random, 0.8), some(random, 0.8));
             (s.a0, s.af) = (some(random, 0.8), some(random, 0.8));
             set_limits(random, &mut s, asymmetric, [(0.1, 12.0); 3], false);
+            (s.v_max, s.v_min) = (s.v_max + s.vf.abs(), s.v_min - s.vf.abs());
+            (s.a_max, s.a_min) = (s.a_max + s.af.abs(), s.a_min - s.af.abs());
             widen(&mut s);
         }
         Robot => {

@@ -116,9 +116,9 @@ fn judge_axis<const N: usize>(
             .max(off(now.a, stored.a, scale.a));
         verdict.worst(&Verdict { jump, ..Verdict::default() });
         verdict.worst(&bounds.of_phase(phase, index < profile.brake().len()));
-        // Rounding of an acceleration that is to be zero must not grow with a long cruise.
-        if phase.jerk == 0.0 && now.a.abs() <= 1e-13 * scale.a {
-            now.a = 0.0;
+        // The rounding of an acceleration must not grow with a long hold or cruise.
+        if phase.jerk == 0.0 && (now.a - stored.a).abs() <= 1e-13 * scale.a {
+            now.a = stored.a;
         }
         now = now.on(phase.duration, phase.jerk);
     }

@@ -1,0 +1,130 @@
+//! `bench [INPUTS] [PASSES]`: time per calculation, ours and the peers', same inputs, one process.
+//!
+//! Each input is timed on its own; of all passes the least counts, so that what other programs do to the machine does not. The C++ peer
+//! is timed inside (its own clock around the calculation), without its binding.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use seamline::otg::{Control, Input, State, Synchronization, Trajectory, calculate_into};
+use seamline_peers::otg_support::cases::{Distribution, random_input};
+use seamline_peers::otg_support::random::Random;
+use seamline_peers::{RsRuckig, Ruckig};
+
+struct Times {
+    mean: f64,
+    p999: f64,
+    worst: f64,
+}
+
+fn summary(mut least: Vec<f64>) -> Times {
+    least.sort_by(f64::total_cmp);
+    let mean = least.iter().sum::<f64>() / least.len() as f64;
+    let at = |share: f64| least[((least.len() - 1) as f64 * share) as usize];
+    Times { mean, p999: at(0.999), worst: at(1.0) }
+}
+
+fn least<T>(inputs: &mut [T], passes: usize, mut run: impl FnMut(&mut T) -> f64) -> Times {
+    let mut best = vec![f64::INFINITY; inputs.len()];
+    for _ in 0..passes {
+        for (best, input) in best.iter_mut().zip(inputs.iter_mut()) {
+            *best = best.min(run(input));
+        }
+    }
+    summary(best)
+}
+
+fn clocked(run: impl FnOnce()) -> f64 {
+    let start = Instant::now();
+    run();
+    start.elapsed().as_nanos() as f64
+}
+
+fn bench<const N: usize>(name: &str, mut inputs: Vec<Input<N>>, passes: usize) {
+    let mut trajectory = Trajectory::default();
+    let ours = least(&mut inputs, passes, |input| {
+        clocked(|| {
+            let _ = black_box(calculate_into(black_box(input), &mut trajectory));
+        })
+    });
+    let mut cpp = Ruckig::new(N);
+    let cpp = least(&mut inputs, passes, |input| {
+        cpp.set(input);
+        cpp.timed()
+    });
+    let mut port = RsRuckig::<N>::default();
+    let port = least(&mut inputs, passes, |input| {
+        port.set(input);
+        clocked(|| {
+            black_box(port.run());
+        })
+    });
+    for (peer, times) in [("C++", &cpp), ("port", &port)] {
+        println!(
+            "{name:32} {N} {peer:5} ours {:7.0} {:7.0} {:7.0} ns | peer {:7.0} {:7.0} {:7.0} ns | ratio {:.3} {:.3} {:.3}",
+            ours.mean,
+            ours.p999,
+            ours.worst,
+            times.mean,
+            times.p999,
+            times.worst,
+            ours.mean / times.mean,
+            ours.p999 / times.p999,
+            ours.worst / times.worst
+        );
+    }
+}
+
+fn symmetric<const N: usize>(
+    count: usize,
+    distribution: Distribution,
+    change: impl Fn(&mut Input<N>),
+) -> Vec<Input<N>> {
+    let mut random = Random(2026);
+    let mut inputs = Vec::new();
+    while inputs.len() < count {
+        let mut input: Input<N> = random_input(&mut random, distribution);
+        if input.limits.velocity_min == input.limits.velocity_max.map(|v| -v)
+            && input.limits.acceleration_min == input.limits.acceleration_max.map(|a| -a)
+        {
+            change(&mut input);
+            inputs.push(input);
+        }
+    }
+    inputs
+}
+
+fn main() {
+    let argument = |index| std::env::args().nth(index).and_then(|n| n.parse().ok());
+    let count = argument(1).unwrap_or(5000);
+    let passes = argument(2).unwrap_or(9);
+    println!("mean, p99.9, worst of {count} inputs, each the least of {passes} readings");
+    let same = |_: &mut _| {};
+    bench::<1>("position", symmetric(count, Distribution::PeerTest, same), passes);
+    bench::<3>("position", symmetric(count, Distribution::PeerTest, |_| {}), passes);
+    bench::<6>("position", symmetric(count, Distribution::PeerTest, |_| {}), passes);
+    bench::<7>("position", symmetric(count, Distribution::PeerTest, |_| {}), passes);
+    bench::<7>(
+        "position, none",
+        symmetric(count, Distribution::PeerTest, |i: &mut Input<7>| {
+            i.synchronization = [Synchronization::None; 7];
+        }),
+        passes,
+    );
+    bench::<6>("robot", symmetric(count, Distribution::Robot, |_| {}), passes);
+    bench::<6>(
+        "robot, rest to rest",
+        symmetric(count, Distribution::Robot, |i: &mut Input<6>| {
+            i.current = State::at_rest(i.current.position);
+            i.target = State::at_rest(i.target.position);
+        }),
+        passes,
+    );
+    bench::<6>(
+        "velocity control",
+        symmetric(count, Distribution::PeerTest, |i: &mut Input<6>| {
+            i.control = [Control::Velocity; 6];
+        }),
+        passes,
+    );
+}
