@@ -114,7 +114,7 @@ impl ArmDescription {
             6 => {
                 let arm = SixAxisArm::from_chain(self.build(chain)?);
                 let inverse = match arm.method() {
-                    InverseMethod::ClosedForm(_) => Inverse::ClosedForm,
+                    InverseMethod::Exact(_) => Inverse::ClosedForm,
                     InverseMethod::Polished(_) => Inverse::Polished,
                     InverseMethod::Numeric => Inverse::Numeric,
                 };

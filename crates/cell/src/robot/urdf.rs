@@ -183,7 +183,7 @@ fn axis(joint: &urdf_rs::Joint, kind: JointKind, base_from_joint: &Pose) -> Resu
     Ok(JointAxis {
         direction: base_from_joint.rotation * direction,
         point: base_from_joint.translation.vector,
-        prismatic: kind == JointKind::Prismatic,
+        kind,
     })
 }
 

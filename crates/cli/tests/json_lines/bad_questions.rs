@@ -33,22 +33,23 @@ fn otg_names_what_where_and_what_was_expected() {
         ("{} {}", "line 5: not JSON at column 4: trailing characters"),
         (
             "{\"id\": 1, \"current\": {\"position\": [1e999]}}",
-            "line 7: not JSON at column 39: number out of range",
+            "line 7: not JSON at column 40: number out of range",
         ),
         (
             "{\"limits\": {\"jerk_max\": [NaN]}}",
-            "line 9: not JSON at column 25: expected value; JSON has no NaN or Infinity, no limit is null",
+            "line 9: not JSON at column 26: expected value; JSON has no NaN or Infinity, no limit is null",
         ),
         (
             "{\"limits\": {\"jerk_max\": [Infinity]}}",
-            "line 11: not JSON at column 25: expected value; JSON has no NaN or Infinity, no limit is null",
+            "line 11: not JSON at column 26: expected value; JSON has no NaN or Infinity, no limit is null",
         ),
         ("[]", "line 13: the line: found a list of 0, expected an object"),
         ("12", "line 15: the line: found 12, expected an object"),
         ("null", "line 17: the line: found null, expected an object"),
         ("{}", "line 19: current.position: missing, expected a list of 1 to 16 numbers"),
     ];
-    let good = r#"{"id":"good","current":{"position":[0]},"target":{"position":[1]},"limits":{"velocity_max":[1]}}"#;
+    let good =
+        r#"{"id":"good","current":{"position":[0]},"target":{"position":[1]},"limits":{"velocity_max":[1]}}"#;
     check(&["otg"], good, &lines);
     let members = [
         (

@@ -72,11 +72,7 @@ fn files_that_are_no_arm_are_told() {
     let line = |last: &str| arm(&(turning("1", "a", "b") + &turning("2", "b", "c") + last));
     let none: [&str; 0] = [];
     let table: Vec<(String, Vec<&str>, &str)> = vec![
-        (
-            "<sdf/".to_owned(),
-            none.to_vec(),
-            "not URDF: No elements found",
-        ),
+        ("<sdf/".to_owned(), none.to_vec(), "not URDF: No elements found"),
         (
             line(&joint("3", "planar", "c", "d", limit)),
             vec![],

@@ -1,60 +1,9 @@
-//! A question with its number of axes fixed, and its answer.
+//! The answer to a question: a trajectory in numbers.
 
-use std::hint::black_box;
-
-use seamline::otg::{self, Input, Order, Phase, Synchronization, Trajectory};
+use seamline::otg::{self, Order, Phase, Synchronization, Trajectory};
 use serde::Serialize;
 
-use crate::json_lines::Mistake;
-
-/// A question of any number of axes.
-pub(super) trait Problem {
-    /// How many axes.
-    fn axes(&self) -> usize;
-
-    /// The answer to it.
-    fn answer(&self) -> Result<Answer, Mistake>;
-
-    /// The bare calculation.
-    fn calculate(&self);
-}
-
-/// A question of N axes.
-pub(super) struct Case<const N: usize> {
-    pub(super) input: Input<N>,
-    /// Instants to sample at, as fractions of the duration.
-    pub(super) sample: Vec<f64>,
-    /// Whether the answer shows each axis's pieces.
-    pub(super) profiles: bool,
-}
-
-impl<const N: usize> Problem for Case<N> {
-    fn axes(&self) -> usize {
-        N
-    }
-
-    fn answer(&self) -> Result<Answer, Mistake> {
-        let trajectory = otg::calculate(&self.input).map_err(|error| Mistake::new(error.to_string()))?;
-        let duration = trajectory.duration();
-        Ok(Answer {
-            ok: true,
-            duration,
-            duration_min_per_axis: trajectory.duration_min().to_vec(),
-            synchronized: trajectory.synchronized().iter().map(mode).collect(),
-            samples: self
-                .sample
-                .iter()
-                .map(|fraction| Sample::at(&trajectory, fraction * duration))
-                .collect(),
-            profiles: self.profiles.then(|| trajectory.profiles().iter().map(pieces).collect()),
-        })
-    }
-
-    fn calculate(&self) {
-        // An input without solution takes its time too.
-        let _ = black_box(otg::calculate(black_box(&self.input)));
-    }
-}
+use super::request::Request;
 
 /// A trajectory in numbers.
 #[derive(Serialize)]
@@ -66,6 +15,21 @@ pub(super) struct Answer {
     samples: Vec<Sample>,
     #[serde(skip_serializing_if = "Option::is_none")]
     profiles: Option<Vec<Vec<Piece>>>,
+}
+
+impl Answer {
+    pub(super) fn of<const N: usize>(trajectory: &Trajectory<N>, request: &Request<N>) -> Self {
+        let duration = trajectory.duration();
+        let at = |fraction| Sample::at(trajectory, fraction * duration);
+        Self {
+            ok: true,
+            duration,
+            duration_min_per_axis: trajectory.duration_min().to_vec(),
+            synchronized: trajectory.synchronized().iter().map(mode).collect(),
+            samples: request.sample.iter().map(at).collect(),
+            profiles: request.profiles.then(|| trajectory.profiles().iter().map(pieces).collect()),
+        }
+    }
 }
 
 #[derive(Serialize)]
