@@ -236,7 +236,7 @@ fn ik_names_what_where_and_what_was_expected() {
     assert_eq!(answers[0]["error"], "the orientation is 3.141593 rad from the nearest that the arm can take");
     let low = r#"{"id":1,"position_m":[0.4,0.1,-0.3],"quaternion_xyzw":[1,0,0,0]}"#;
     let answers = crate::program::answers(&["ik", "--robot", "scara600"], low);
-    assert_eq!(answers[0]["error"], "joint 3 would be at -0.300000, expected -0.200000 to 0.000000");
+    assert_eq!(answers[0]["error"], "joint 3 would be at -0.300000 m, expected -0.200000 to 0.000000 m");
 }
 
 #[test]

@@ -180,7 +180,8 @@ fn from_one_to_sixteen_axes() {
 /// Every number comes back as it was given, and nothing is ever NaN.
 #[test]
 fn numbers_survive() {
-    for position in [0.1 + 0.2, 1e-308, -5e-324, 1.0 / 3.0, 9_007_199_254_740_993.0, -2.225_073_858_507_201e-308]
+    for position in
+        [0.1 + 0.2, 1e-308, -5e-324, 1.0 / 3.0, 9_007_199_254_740_993.0, -2.225_073_858_507_201e-308]
     {
         let mut question = rest();
         question["current"]["position"] = json!([position]);
