@@ -194,17 +194,16 @@ fn numbers_survive() {
             "{answer}"
         );
     }
-    for huge in [1e150, 1e300, 1.7e308] {
-        let mut question = rest();
-        question["current"]["position"] = json!([-huge]);
-        question["target"]["position"] = json!([huge]);
-        question["sample"] = json!([0, 0.5, 1]);
-        question["profiles"] = json!(true);
+    for huge in [1e30, 1e99, 1e150, 1e300, 1.7e308] {
+        let question = json!({
+            "id": huge, "control": ["velocity", "position"],
+            "current": {"position": [0, -huge], "acceleration": [huge, 0]},
+            "target": {"position": [null, huge]},
+            "limits": {"acceleration_max": [null, 1], "jerk_max": [1e-42, 1]},
+            "sample": [0, 0.5, 1], "profiles": true,
+        });
         let text = String::from_utf8(run(&["otg"], &question.to_string()).stdout).unwrap();
-        assert!(
-            !text.contains("null,\"ok\"") && !text.contains("[null") && !text.contains(":null"),
-            "{text}"
-        );
+        assert!(!text.contains("null"), "{text}");
     }
 }
 

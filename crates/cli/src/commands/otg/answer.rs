@@ -4,6 +4,7 @@ use seamline::otg::{self, Order, Phase, Synchronization, Trajectory};
 use serde::Serialize;
 
 use super::request::Request;
+use crate::json_lines::Mistake;
 
 /// A trajectory in numbers.
 #[derive(Serialize)]
@@ -18,19 +19,34 @@ pub(super) struct Answer {
 }
 
 impl Answer {
-    pub(super) fn of<const N: usize>(trajectory: &Trajectory<N>, request: &Request<N>) -> Self {
+    /// Refuses numbers that overflow, which JSON does not have.
+    pub(super) fn of<const N: usize>(
+        trajectory: &Trajectory<N>,
+        request: &Request<N>,
+    ) -> Result<Self, Mistake> {
         let duration = trajectory.duration();
         let at = |fraction| Sample::at(trajectory, fraction * duration);
-        Self {
+        let answer = Self {
             ok: true,
             duration,
             duration_min_per_axis: trajectory.duration_min().to_vec(),
             synchronized: trajectory.synchronized().iter().map(mode).collect(),
             samples: request.sample.iter().map(at).collect(),
             profiles: request.profiles.then(|| trajectory.profiles().iter().map(pieces).collect()),
-        }
+        };
+        if answer.is_finite() { Ok(answer) } else { Err(Mistake::new(OUT_OF_RANGE)) }
+    }
+
+    fn is_finite(&self) -> bool {
+        let durations = self.duration_min_per_axis.iter().chain([&self.duration]);
+        let samples = self.samples.iter().flat_map(|s| [&s.position, &s.velocity, &s.acceleration]);
+        let pieces = self.profiles.iter().flatten().flatten();
+        durations.chain(samples.flatten()).all(|number| number.is_finite())
+            && pieces.into_iter().all(Piece::is_finite)
     }
 }
+
+const OUT_OF_RANGE: &str = "the solution is beyond the range of 64-bit floats";
 
 #[derive(Serialize)]
 struct Sample {
@@ -59,6 +75,15 @@ enum Piece {
     First { duration: f64, velocity: f64 },
     Second { duration: f64, acceleration: f64 },
     Third { duration: f64, jerk: f64 },
+}
+
+impl Piece {
+    fn is_finite(&self) -> bool {
+        let (Self::First { duration, velocity: control }
+        | Self::Second { duration, acceleration: control }
+        | Self::Third { duration, jerk: control }) = self;
+        duration.is_finite() && control.is_finite()
+    }
 }
 
 fn pieces(profile: &otg::Profile) -> Vec<Piece> {

@@ -67,7 +67,7 @@ impl<const N: usize> Axes for Generator<N> {
         let request = Request::read(line)?;
         calculate_into(&request.input, &mut self.trajectory)
             .map_err(|error| Mistake::new(error.to_string()))?;
-        Ok(Answer::of(&self.trajectory, &request))
+        Answer::of(&self.trajectory, &request)
     }
 
     fn keep(&mut self, line: &Object<'_>) -> Result<(), Mistake> {
