@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::path::PathBuf;
 
 use seamline::geometry::{Pose, Rotation};
-use seamline::kinematics::{InverseError, Kinematics};
+use seamline::kinematics::{InverseError, JointKind, Kinematics};
 use seamline_cell::robot::{ArmDescription, ArmTask, Inverse};
 use serde::Serialize;
 
@@ -147,8 +147,15 @@ fn in_words(error: &InverseError, description: &ArmDescription) -> String {
              {iterations} iterations"
         ),
         InverseError::PositionLimit { axis, value, min, max } => {
-            let name = description.joints.get(axis).map_or("", |joint| joint.name.as_str());
-            format!("joint {name} would be at {value:.6}, expected {min:.6} to {max:.6}")
+            let joint = &description.joints[axis];
+            let unit = match joint.kind {
+                JointKind::Revolute => "rad",
+                JointKind::Prismatic => "m",
+            };
+            format!(
+                "joint {} would be at {value:.6} {unit}, expected {min:.6} to {max:.6} {unit}",
+                joint.name
+            )
         }
         InverseError::NotFollowed { .. } | InverseError::Singular { .. } => {
             "the arm is singular there".to_owned()

@@ -19,11 +19,11 @@ pub(crate) const READINGS: usize = 9;
 /// The input cannot be read, or has no question.
 pub(crate) fn read_all<Q>(
     input: Option<&Path>,
-    read: impl Fn(&Object<'_>) -> Result<Q, Mistake>,
+    mut read: impl FnMut(&Object<'_>) -> Result<Q, Mistake>,
 ) -> anyhow::Result<Vec<Q>> {
     let (mut cases, mut left_out, mut first) = (Vec::new(), 0, None);
     questions(input, |question, _| {
-        match question.ask(&read) {
+        match question.ask(&mut read) {
             Ok(case) => cases.push(case),
             Err(mistake) => {
                 left_out += 1;

@@ -139,15 +139,19 @@ impl<'a> Object<'a> {
 
     /// Fills `into` from a list of as many numbers; nothing happens if it is missing. Says whether it was there.
     pub(crate) fn fill(&self, key: &str, numbers: &Numbers, into: &mut [f64]) -> Result<bool, Mistake> {
-        let expected = || format!("a list of {} numbers", into.len());
-        let Some(items) = self.list(key, &expected())? else { return Ok(false) };
-        if items.len() != into.len() {
-            return Err(Mistake::value(&self.place(key), &self.members[key], &expected()));
+        match self.get(key) {
+            None => Ok(false),
+            Some(Value::Array(items)) if items.len() == into.len() => {
+                for (index, (number, item)) in into.iter_mut().zip(items).enumerate() {
+                    *number = numbers.read(|| format!("{}[{index}]", self.place(key)), item)?;
+                }
+                Ok(true)
+            }
+            Some(other) => {
+                let expected = format!("a list of {} numbers", into.len());
+                Err(Mistake::value(&self.place(key), other, &expected))
+            }
         }
-        for (index, (number, item)) in into.iter_mut().zip(items).enumerate() {
-            *number = numbers.read(|| format!("{}[{index}]", self.place(key)), item)?;
-        }
-        Ok(true)
     }
 
     /// As [`Object::fill`], for a list that must be there.

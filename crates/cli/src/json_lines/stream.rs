@@ -35,7 +35,7 @@ pub(crate) struct Question {
 
 impl Question {
     fn of(line: usize, text: &[u8]) -> Self {
-        let content = serde_json::from_slice(text).map_err(|error| {
+        let content = serde_json::from_slice(text.trim_ascii_end()).map_err(|error| {
             // The parser counts lines too, from the only one it sees.
             let reason = error.to_string();
             let reason = reason.split(" at line ").next().unwrap_or(&reason);

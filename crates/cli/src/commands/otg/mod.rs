@@ -1,15 +1,12 @@
 //! `seamline otg`: the trajectory generator by itself.
 
-mod problem;
+mod answer;
+mod axes;
 mod request;
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use problem::Problem;
-use serde::Serialize;
-
-use crate::json_lines::bench::{self, Times};
+use crate::json_lines::bench::read_all;
 use crate::json_lines::{answer_each, print_line};
 
 const HELP: &str = "\
@@ -35,9 +32,8 @@ acceleration limit {\"duration\", \"velocity\"}. A question without answer gets
 and the next one its turn.
 
 Example:
-  echo '{\"id\": 1, \"current\": {\"position\": [0, 0]}, \"target\": {\"position\": [1, 0.5]},
-    \"limits\": {\"velocity_max\": [1, 1], \"acceleration_max\": [2, 2], \"jerk_max\": [10, 10]},
-    \"sample\": [0, 0.5, 1]}' | tr -d '\\n' | seamline otg";
+  echo '{\"id\": 1, \"current\": {\"position\": [0]}, \"target\": {\"position\": [1]}, \"sample\": [0.5, 1],
+    \"limits\": {\"velocity_max\": [1], \"acceleration_max\": [2]}}' | tr -d '\\n' | seamline otg";
 
 /// Calculate time-optimal, jerk-limited trajectories: JSON lines in, JSON lines out.
 #[derive(Debug, clap::Args)]
@@ -53,26 +49,15 @@ pub(crate) struct Arguments {
     bench: bool,
 }
 
-#[derive(Serialize)]
-struct Measured {
-    cases: usize,
-    dofs: usize,
-    #[serde(flatten)]
-    times: Times,
-}
-
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let input = arguments.file.as_deref();
+    let mut generators = axes::all();
     if !arguments.bench {
-        return answer_each(input, |line| request::read(line)?.answer());
+        return answer_each(input, |line| generators[request::axes(line)? - 1].answer(line));
     }
-    let mut groups: BTreeMap<usize, Vec<Box<dyn Problem>>> = BTreeMap::new();
-    for problem in bench::read_all(input, request::read)? {
-        groups.entry(problem.axes()).or_default().push(problem);
-    }
-    for (dofs, cases) in groups {
-        let times = Times::measure(&cases, |case| case.calculate());
-        print_line(&Measured { cases: cases.len(), dofs, times })?;
+    read_all(input, |line| generators[request::axes(line)? - 1].keep(line))?;
+    for measured in generators.iter_mut().filter_map(|generator| generator.measure()) {
+        print_line(&measured)?;
     }
     Ok(())
 }

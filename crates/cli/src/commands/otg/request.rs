@@ -2,11 +2,10 @@
 
 use seamline::otg::{Control, Input, Limits, State, Synchronization};
 
-use super::problem::{Case, Problem};
 use crate::json_lines::{Mistake, Numbers, Object};
 
 /// Most axes of a question.
-const AXES_MAX: usize = 16;
+pub(super) const AXES_MAX: usize = 16;
 
 const KEYS: [&str; 9] =
     ["id", "control", "synchronization", "current", "target", "limits", "duration_min", "sample", "profiles"];
@@ -42,53 +41,50 @@ const LOWER: Numbers = Numbers {
 const SECONDS: Numbers = Numbers { min: 0.0, expected: "seconds, 0 or more", ..Numbers::ANY };
 const FRACTION: Numbers = Numbers { min: 0.0, max: 1.0, expected: "a number from 0 to 1", ..Numbers::ANY };
 
-/// Reads a question, with as many axes as its current position has.
-pub(super) fn read(line: &Object<'_>) -> Result<Box<dyn Problem>, Mistake> {
+/// A question of N axes.
+pub(super) struct Request<const N: usize> {
+    pub(super) input: Input<N>,
+    /// Instants to sample at, as fractions of the duration.
+    pub(super) sample: Vec<f64>,
+    /// Whether the answer shows each axis's pieces.
+    pub(super) profiles: bool,
+}
+
+/// How many axes a question has: as many as its current position. At most [`AXES_MAX`], at least one.
+pub(super) fn axes(line: &Object<'_>) -> Result<usize, Mistake> {
     line.check_spelling(&KEYS)?;
     let expected = "a list of 1 to 16 numbers";
-    let current = state(line, "current")?;
-    let position = match current {
+    let position = match state(line, "current")? {
         Some(current) => current.list("position", expected)?,
         None => None,
     };
-    let axes = position.ok_or_else(|| Mistake::missing("current.position", expected))?.len();
-    match axes {
-        1 => case::<1>(line),
-        2 => case::<2>(line),
-        3 => case::<3>(line),
-        4 => case::<4>(line),
-        5 => case::<5>(line),
-        6 => case::<6>(line),
-        7 => case::<7>(line),
-        8 => case::<8>(line),
-        9 => case::<9>(line),
-        10 => case::<10>(line),
-        11 => case::<11>(line),
-        12 => case::<12>(line),
-        13 => case::<13>(line),
-        14 => case::<14>(line),
-        15 => case::<15>(line),
-        AXES_MAX => case::<AXES_MAX>(line),
-        _ => Err(Mistake::new(format!("current.position: found a list of {axes}, expected {expected}"))),
+    match position.map(<[_]>::len) {
+        Some(axes @ 1..=AXES_MAX) => Ok(axes),
+        Some(other) => {
+            Err(Mistake::new(format!("current.position: found a list of {other}, expected {expected}")))
+        }
+        None => Err(Mistake::missing("current.position", expected)),
     }
 }
 
-fn case<const N: usize>(line: &Object<'_>) -> Result<Box<dyn Problem>, Mistake> {
-    let mut input = Input::<N>::new(State::default(), State::default(), limits(line)?);
-    line.choices("control", &CONTROLS, &mut input.control)?;
-    line.choices("synchronization", &SYNCHRONIZATIONS, &mut input.synchronization)?;
-    if let Some(current) = state(line, "current")? {
-        current.fill_required("position", &Numbers::ANY, &mut input.current.position)?;
-        current.fill("velocity", &Numbers::ANY, &mut input.current.velocity)?;
-        current.fill("acceleration", &Numbers::ANY, &mut input.current.acceleration)?;
+impl<const N: usize> Request<N> {
+    pub(super) fn read(line: &Object<'_>) -> Result<Self, Mistake> {
+        let mut input = Input::new(State::default(), State::default(), limits(line)?);
+        line.choices("control", &CONTROLS, &mut input.control)?;
+        line.choices("synchronization", &SYNCHRONIZATIONS, &mut input.synchronization)?;
+        if let Some(current) = state(line, "current")? {
+            current.fill_required("position", &Numbers::ANY, &mut input.current.position)?;
+            current.fill("velocity", &Numbers::ANY, &mut input.current.velocity)?;
+            current.fill("acceleration", &Numbers::ANY, &mut input.current.acceleration)?;
+        }
+        input.target = target(line, &input.control)?;
+        input.duration_min = line.number("duration_min", &SECONDS)?;
+        Ok(Self {
+            input,
+            sample: line.numbers("sample", &FRACTION)?.unwrap_or_default(),
+            profiles: line.flag("profiles")?.unwrap_or(false),
+        })
     }
-    input.target = target(line, &input.control)?;
-    input.duration_min = line.number("duration_min", &SECONDS)?;
-    Ok(Box::new(Case {
-        input,
-        sample: line.numbers("sample", &FRACTION)?.unwrap_or_default(),
-        profiles: line.flag("profiles")?.unwrap_or(false),
-    }))
 }
 
 fn state<'a>(line: &Object<'a>, key: &'static str) -> Result<Option<Object<'a>>, Mistake> {
