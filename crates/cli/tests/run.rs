@@ -1,5 +1,7 @@
 //! The program as a user meets it: the main job's results, and wrong files with their one message.
 
+#![allow(clippy::expect_used, reason = "a failing test says what it missed")]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,5 +1,7 @@
 //! What must hold whatever the problem: symmetries, units, optimality, demanded durations, and the error on bad input.
 
+#![allow(clippy::panic, reason = "a failing case shows its input")]
+
 mod otg_support;
 
 use otg_support::cases::{self, Distribution, mirrored, random_input, reversed};

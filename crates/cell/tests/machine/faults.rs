@@ -1,8 +1,9 @@
 //! Faults in motion: each is named, stops the arm as its category says, and loses nothing that could go on.
 
 use crate::bench::{Ar2010, Bench, independent_forward, independent_torch, move_to, worst_shares};
-use seamline::control::{Command, CycleOutput, Event, Mode};
+use seamline::control::{Command, CycleOutput, Event, Mode, Motion, PathMotion};
 use seamline::drive::DriveFault;
+use seamline::path::TimingPiece;
 use seamline::safety::Fault;
 use seamline_cell::cell::Cell;
 use seamline_cell::job::{MovePath, Speed};
@@ -60,7 +61,7 @@ impl Run {
         panic!("it does not come to that");
     }
 
-    fn into_line(&mut self, cycles: usize) {
+    fn run_into_line(&mut self, cycles: usize) {
         self.until(|output| output.status.line == LINE);
         (0..cycles).for_each(|_| {
             self.cycle();
@@ -102,7 +103,7 @@ fn an_emergency_stop_keeps_the_line_and_the_job_goes_on_after_reset() {
     let (cell, arm) = setup();
     for case in 0..100_usize {
         let mut run = Run::start(&cell, &arm);
-        run.into_line(case * 37 % 900);
+        run.run_into_line(case * 37 % 900);
         run.bench.input.fault = Some(Fault::EmergencyStop);
         let hit = run.cycle();
         assert_eq!(
@@ -122,7 +123,7 @@ fn an_emergency_stop_keeps_the_line_and_the_job_goes_on_after_reset() {
         );
         run.bench.input.event = Some(Event::Resume);
         let end = run.until(|output| output.status.mode == Mode::Standstill);
-        assert!(end.command.position.iter().zip(END).all(|(a, b)| (a - b).abs() < 1e-5), "case {case}");
+        assert!(end.command.position.iter().zip(END).all(|(a, b)| (a - b).abs() < 2e-5), "case {case}");
         run.assert_within_limits(&arm, cell.cycle.period);
         assert!(run.off_the_line(&arm) < 1e-9, "case {case}: {}", run.off_the_line(&arm));
     }
@@ -133,7 +134,7 @@ fn a_stuck_joint_is_a_following_error_and_stops_on_the_line() {
     let (cell, arm) = setup();
     for joint in [0, 1] {
         let mut run = Run::start(&cell, &arm);
-        run.into_line(100);
+        run.run_into_line(100);
         run.bench.drive.inject(InjectedFault::Stuck { joint }).unwrap();
         let fault = run.until(|output| output.status.fault.is_some());
         assert!(
@@ -150,7 +151,7 @@ fn a_stuck_joint_is_a_following_error_and_stops_on_the_line() {
 fn an_encoder_jump_is_found_at_once() {
     let (cell, arm) = setup();
     let mut run = Run::start(&cell, &arm);
-    run.into_line(100);
+    run.run_into_line(100);
     run.bench.drive.inject(InjectedFault::EncoderJump { joint: 3, offset: -0.5 }).unwrap();
     run.cycle();
     run.cycle();
@@ -165,7 +166,7 @@ fn silent_drives_and_alarms_are_category_zero() {
         [(InjectedFault::Silent, DriveFault::Silent), (alarm, DriveFault::Axis(4, 77))]
     {
         let mut run = Run::start(&cell, &arm);
-        run.into_line(200);
+        run.run_into_line(200);
         run.bench.drive.inject(injected).unwrap();
         let before = run.cycle();
         let output = run.cycle();
@@ -173,6 +174,7 @@ fn silent_drives_and_alarms_are_category_zero() {
         assert!(!output.power && !output.arc, "power and arc off at once");
         assert_eq!(output.command.position, before.command.position, "nothing more is commanded");
         run.bench.drive.clear_faults();
+        run.cycle();
         run.bench.input.event = Some(Event::Reset);
         assert_eq!(run.cycle().status.mode, Mode::Standstill, "the arm may have dropped: the job is over");
     }
@@ -186,10 +188,8 @@ fn a_starved_motion_halts_within_the_joint_limits() {
     all.pop();
     let Some(Command::Move(last)) = all.last_mut() else { panic!("a move comes last") };
     last.ends_at_rest = false;
-    let seamline::control::Motion::Path(motion) = &mut last.motion else { panic!("along a path") };
-    // The line's first two thirds in time, so that it ends in full motion.
-    let cut = cut_short(motion, 2.0 / 3.0);
-    *motion = cut;
+    let Motion::Path(motion) = &mut last.motion else { panic!("along a path") };
+    *motion = beginning(motion);
     let mut run = Run { bench: Bench::new(&cell, &arm, all), outputs: Vec::new() };
     run.bench.cycle_with(Event::Start);
     let fault = run.until(|output| output.status.fault.is_some());
@@ -199,22 +199,23 @@ fn a_starved_motion_halts_within_the_joint_limits() {
     run.assert_within_limits(&arm, cell.cycle.period);
 }
 
-fn cut_short(motion: &seamline::control::PathMotion, share: f64) -> seamline::control::PathMotion {
-    let pieces: Vec<_> = (0..30)
-        .map(|k| {
-            let step = motion.duration() * share / 30.0;
-            let state = motion.state(f64::from(k) * step);
-            seamline::path::TimingPiece {
-                duration: step,
-                position: state.position,
-                velocity: state.velocity,
-                acceleration: state.acceleration,
-                jerk: (motion.state(f64::from(k + 1) * step).acceleration - state.acceleration) / step,
-                ..Default::default()
-            }
-        })
-        .collect();
-    seamline::control::PathMotion::new(motion.path, &independent_torch(), &pieces).unwrap()
+/// The first 100 ms of a line, in pieces whose borders fall on those of its S-curve (20 ms a jerk phase): it ends in
+/// full motion.
+fn beginning(motion: &PathMotion) -> PathMotion {
+    const STEP: f64 = 2.5e-3;
+    let piece = |k: u32| {
+        let (state, next) = (motion.state(f64::from(k) * STEP), motion.state(f64::from(k + 1) * STEP));
+        TimingPiece {
+            duration: STEP,
+            position: state.position,
+            velocity: state.velocity,
+            acceleration: state.acceleration,
+            jerk: (next.acceleration - state.acceleration) / STEP,
+            ..TimingPiece::default()
+        }
+    };
+    let pieces: Vec<_> = (0..40).map(piece).collect();
+    PathMotion::new(motion.path, &independent_torch(), &pieces).unwrap()
 }
 
 /// A job queue that would drive through a limit: the envelope stops the command before it leaves the cycle.
@@ -237,7 +238,7 @@ fn a_command_beyond_a_limit_never_leaves_the_cycle() {
 fn late_cycles_in_a_row_stop_the_arm_on_its_path() {
     let (cell, arm) = setup();
     let mut run = Run::start(&cell, &arm);
-    run.into_line(100);
+    run.run_into_line(100);
     run.bench.input.late = true;
     let fault = run.until(|output| output.status.fault.is_some());
     assert!(matches!(fault.status.fault, Some(Fault::Overrun { count: 11 })));

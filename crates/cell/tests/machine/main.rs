@@ -1,5 +1,12 @@
 //! The control cycle with planned moves and simulated drives, judged by an independent arm model.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::needless_range_loop,
+    reason = "tests may; joints are counted"
+)]
+
 mod bench;
 mod cycle;
 mod faults;
