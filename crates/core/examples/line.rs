@@ -2,6 +2,8 @@
 //!
 //! `cargo run -p seamline --example line` prints the joints every 100 ms.
 
+#![allow(clippy::print_stdout, clippy::expect_used, reason = "an example, not a controller")]
+
 use seamline::geometry::Pose;
 use seamline::kinematics::{Kinematics, models};
 use seamline::otg::{Input, Limits, State, calculate};

@@ -1,5 +1,7 @@
 //! Random problems of every distribution, each trajectory judged by integration.
 
+#![allow(clippy::panic, reason = "a failing case shows its input")]
+
 mod otg_support;
 
 use otg_support::cases::{self, Distribution, random_input};

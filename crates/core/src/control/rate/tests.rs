@@ -93,10 +93,10 @@ impl Plan {
         while rate > 0.0 && time < 5.0 {
             let motion = self.motion(now);
             let mut slope = -1e3_f64;
-            for axis in 0..3 {
+            for (axis, limit) in ACCELERATION.into_iter().enumerate() {
                 let (v, a) = (motion.velocity[axis], motion.acceleration[axis] * rate * rate);
                 if v != 0.0 {
-                    slope = slope.max((-ACCELERATION[axis] - a * v.signum()) / v.abs());
+                    slope = slope.max((-limit - a * v.signum()) / v.abs());
                 }
             }
             now += rate * step;
