@@ -96,6 +96,21 @@ pub enum Problem {
         /// Why.
         error: InverseError,
     },
+    /// The tool centre point would leave the cell's workspace.
+    #[error(
+        "the tool centre point would leave the workspace at ({:.1}, {:.1}, {:.1}) mm; safety.workspace_min_mm and \
+         workspace_max_mm permit ({:.0}, {:.0}, {:.0}) to ({:.0}, {:.0}, {:.0}) mm",
+        .position_mm[0], .position_mm[1], .position_mm[2],
+        .min_mm[0], .min_mm[1], .min_mm[2], .max_mm[0], .max_mm[1], .max_mm[2]
+    )]
+    Workspace {
+        /// Where.
+        position_mm: [f64; 3],
+        /// The workspace's lowest corner.
+        min_mm: [f64; 3],
+        /// Its highest corner.
+        max_mm: [f64; 3],
+    },
     /// A path that the arm cannot follow.
     #[error("{place} the robot cannot go on: {reason}")]
     Path {

@@ -13,6 +13,7 @@ mod resolve;
 mod speed;
 pub mod timing;
 mod tool_path;
+mod workspace;
 
 pub use arm::{Arm, ArmError, PlanningArm};
 pub use error::{Place, PlanError, Problem};

@@ -9,6 +9,7 @@ use super::error::{PlanError, Problem};
 use super::resolve::{self, Goal, ToolPose, goal};
 use super::speed;
 use super::tool_path;
+use super::workspace;
 use crate::cell::Cell;
 use crate::job::{Action, ArcCondition, ArcPart, Frame, Location, Move, MovePath, Note, Speed, Step};
 use crate::record::{SegmentInfo, SegmentKind};
@@ -227,6 +228,8 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         let input = joint_input(&self.arm.limits, &self.joints, &target, percent / 100.0, r#move);
         let trajectory = calculate(&input)
             .map_err(|error| Problem::Generator { name: name(), reason: error.to_string() })?;
+        let tool = &goal.tool.flange_from_tcp;
+        workspace::check_joint_move(&trajectory, &self.arm.kinematics, tool, &self.cell.safety)?;
         let segment = self.next_segment();
         let block = Block {
             line: at.line,

@@ -11,6 +11,7 @@ use super::planner::{Planned, Planner};
 use super::resolve::Goal;
 use super::speed;
 use super::timing::{Order, PathLimits, Slowdown, Timing, TimingError, TimingKind, TimingLimits, time_path};
+use super::workspace;
 use crate::cell::Cell;
 use crate::job::{ArcPart, Coordinates, Frame, Location, Move, Target};
 use crate::record::{SegmentInfo, SegmentKind};
@@ -79,6 +80,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         if path.length() == 0.0 {
             return Ok(Planned { segment: Some(info), ..Planned::default() });
         }
+        workspace::check_path(path, &self.cell.safety)?;
         let follow = PathJoints::follow(&self.arm.kinematics, path, &self.tool.flange_from_tcp, &self.joints);
         let mut joints =
             follow.map_err(|(s, error)| self.path_problem(path, s, &self.follow_reason(&error)))?;

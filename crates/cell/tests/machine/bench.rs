@@ -110,9 +110,18 @@ pub(crate) struct Bench {
 
 impl Bench {
     pub(crate) fn new(cell: &Cell, arm: &Ar2010, commands: Vec<Command<6>>) -> Self {
+        Self::with_drive(cell, arm, SimulatedDrive::from_cell(cell).unwrap(), commands)
+    }
+
+    pub(crate) fn with_drive(
+        cell: &Cell,
+        arm: &Ar2010,
+        drive: SimulatedDrive<6>,
+        commands: Vec<Command<6>>,
+    ) -> Self {
         let mut bench = Self {
             cycle: Cycle::new(config(cell, arm), arm.kinematics, arm.home),
-            drive: SimulatedDrive::from_cell(cell).unwrap(),
+            drive,
             queue: Queue(commands.into()),
             input: CycleInput {
                 measured: Ok(arm.home),

@@ -11,3 +11,4 @@ mod bench;
 mod cycle;
 mod faults;
 mod no_alloc;
+mod pause;
