@@ -11,7 +11,7 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use common::{Kind, Move, Random, joint_limits, random_move};
+use common::{Kind, Move, REFERENCE_SEED, Random, joint_limits, random_move};
 use seamline_cell::plan::timing::{JointPath, Timing, TimingKind, time_path};
 
 const REPEATS: usize = 3;
@@ -20,7 +20,7 @@ fn main() -> std::io::Result<()> {
     let mut arguments = std::env::args().skip(1);
     let count = arguments.next().and_then(|n| n.parse().ok()).unwrap_or(250);
     let folder = arguments.next();
-    let mut random = Random(1);
+    let mut random = Random(REFERENCE_SEED);
     let mut speeds = Vec::new();
     for index in 0..count {
         let mut job = random_move(&mut random, Kind::of(index));

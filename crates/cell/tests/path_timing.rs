@@ -4,8 +4,10 @@
 
 mod common;
 
+use std::collections::HashMap;
+
 use common::planar::Planar;
-use common::{ArmPath, Kind, Move, Random, joint_limits, random_move};
+use common::{ArmPath, Kind, Move, REFERENCE_SEED, Random, joint_limits, random_move};
 use seamline::kinematics::JointJet;
 use seamline_cell::plan::timing::{
     JointPath, Order, PathLimits, Timing, TimingError, TimingKind, TimingLimits, time_path,
@@ -112,11 +114,18 @@ fn assert_whole(timing: &Timing, length: f64, limits: &PathLimits, what: &str) {
 
 /// 250 random moves, 50 of them beside the wrist's and 50 beside the shoulder's singularity (1 µrad and 1 µm to 20 mrad
 /// and 10 mm), 5 to 1000 mm/s: each gets an optimized or plain timing, and every joint keeps its limits by exact
-/// derivatives and by differences of positions 1 ms apart.
+/// derivatives and by differences of positions 1 ms apart. Against TOPP-RA, which needs no time to build up
+/// acceleration where we need 20 ms, the motions take 1.02 times as long (median), 1.06 (95 %), 1.15 (greatest) or less.
 #[test]
-fn random_moves_keep_every_limit() {
+fn random_moves_keep_every_limit_and_lose_little_time() {
     let joints = joint_limits();
-    let mut random = Random(7);
+    let reference: HashMap<usize, f64> = include_str!("data/path_timing_toppra.csv")
+        .lines()
+        .filter_map(|line| line.split_once(','))
+        .filter_map(|(index, seconds)| Some((index.parse().ok()?, seconds.parse().ok()?)))
+        .collect();
+    let mut ratios = Vec::new();
+    let mut random = Random(REFERENCE_SEED);
     for index in 0..250 {
         let Move { kind, mut path, limits } = random_move(&mut random, Kind::of(index));
         let what = format!("move {index}, {kind:?}");
@@ -129,7 +138,13 @@ fn random_moves_keep_every_limit() {
         for order in 0..3 {
             assert!(differences[order] <= DIFFERENCES[order], "{what}: {differences:?}");
         }
+        ratios.extend(reference.get(&index).map(|seconds| timing.duration() / seconds));
     }
+    ratios.sort_by(f64::total_cmp);
+    assert!(ratios.len() >= 240);
+    let [median, most, greatest] =
+        [ratios.len() / 2, ratios.len() * 95 / 100, ratios.len() - 1].map(|i| ratios[i]);
+    assert!(median <= 1.02 && most <= 1.06 && greatest <= 1.15, "{median} {most} {greatest}");
 }
 
 /// The same for 25 moves each with weak drives, slow build-up of acceleration, ten times the programmed speed, slow joints

@@ -129,6 +129,9 @@ impl Kind {
     }
 }
 
+/// The seed of the moves that `data/path_timing_toppra.csv` speaks of.
+pub(crate) const REFERENCE_SEED: u64 = 1;
+
 /// A random move.
 pub(crate) struct Move {
     pub(crate) kind: Kind,

@@ -160,13 +160,13 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
     ) -> Result<Vec<TimingPiece>, TimingError<P::Error>> {
         let mut factor = load.stretch();
         for _ in 0..STRETCHINGS {
-            if factor <= 1.0 {
-                break;
-            }
             pieces = stretched(&pieces, factor * (1.0 + ROUNDING));
             factor = Check::new(self.path, self.joints, self.limits).pieces(&pieces)?.stretch();
+            if factor <= 1.0 {
+                return Ok(pieces);
+            }
         }
-        Ok(pieces)
+        Err(TimingError::NoSpeed)
     }
 }
 

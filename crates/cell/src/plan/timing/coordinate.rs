@@ -2,7 +2,7 @@
 //!
 //! w is close to the time that the motion will take, so that even knots in w are even in time, and rest is an
 //! ordinary point: there s = s_w = s_ww = 0 and s_www is not. s(w) is a uniform quintic B-spline, hence C⁴, and it is
-//! monotone because its control points are.
+//! monotone where its control points are.
 
 use super::motion::{PathState, TimingPiece};
 
@@ -59,11 +59,11 @@ impl Coordinate {
         Self { step, controls }
     }
 
-    /// From a motion in time.
+    /// From a motion in time: nearly the motion itself, unless that would turn back between two knots.
     pub(super) fn following(pieces: &[TimingPiece], knots: usize, ends: [End; 2], speed: f64) -> Self {
         let duration: f64 = pieces.iter().map(|piece| piece.duration).sum();
         let step = duration / (knots - 1) as f64;
-        let mut samples = Vec::with_capacity(knots);
+        let mut states = Vec::with_capacity(knots);
         let (mut index, mut begun) = (0, 0.0);
         for knot in 0..knots {
             let time = knot as f64 * step;
@@ -71,12 +71,15 @@ impl Coordinate {
                 begun += pieces[index].duration;
                 index += 1;
             }
-            let state = pieces[index].at((time - begun).min(pieces[index].duration));
-            samples.push(quasi_interpolant(&state, step));
+            states.push(pieces[index].at((time - begun).min(pieces[index].duration)));
         }
-        let (first, last) = (pieces[0].position, pieces[pieces.len() - 1].end().position);
-        samples[0] = first;
-        samples[knots - 1] = last;
+        let mut samples: Vec<f64> = states.iter().map(|state| quasi_interpolant(state, step)).collect();
+        // At rest the first control lies before the end: see `close`.
+        if samples[1..knots - 1].windows(2).any(|pair| pair[1] <= pair[0]) {
+            samples = states.iter().map(|state| state.position).collect();
+        }
+        samples[0] = pieces[0].position;
+        samples[knots - 1] = pieces[pieces.len() - 1].end().position;
         Self::new(&samples, step, ends, speed)
     }
 

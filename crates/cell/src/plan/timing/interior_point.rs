@@ -30,15 +30,6 @@ const SHRINK: f64 = 0.2;
 const REST_WEIGHT: f64 = 2.0;
 const REST_SITES: usize = 5;
 
-/// Why the iterations ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Outcome {
-    Converged,
-    OutOfIterations,
-    /// Numbers ran out of range.
-    Broken,
-}
-
 /// The solver and its memory, reused from problem to problem.
 #[derive(Debug, Default)]
 pub(super) struct InteriorPoint {
@@ -53,7 +44,6 @@ pub(super) struct InteriorPoint {
     right: Vec<f64>,
     centring: Vec<f64>,
     direction: Vec<f64>,
-    pub(super) iterations: usize,
 }
 
 /// Sums over all rows at the start of an iteration.
@@ -69,14 +59,16 @@ struct Progress {
 }
 
 impl InteriorPoint {
-    /// Solves a new problem; the controls of β are in [`InteriorPoint::controls`] afterwards.
-    pub(super) fn solve(&mut self, program: &Program, accuracy: f64) -> Outcome {
+    /// Solves a new problem to within `accuracy`, a share of the duration; the controls of β are in
+    /// [`InteriorPoint::controls`] afterwards. False where numbers ran out of range. Running out of iterations is no
+    /// failure: what was reached is judged by others.
+    pub(super) fn solve(&mut self, program: &Program, accuracy: f64) -> bool {
         self.start(program);
         self.iterate(program, accuracy)
     }
 
-    /// Solves the last problem again after small changes to its demands.
-    pub(super) fn solve_again(&mut self, program: &Program, accuracy: f64) -> Outcome {
+    /// Solves the last problem again after small changes to its demands; as [`InteriorPoint::solve`].
+    pub(super) fn solve_again(&mut self, program: &Program, accuracy: f64) -> bool {
         for (index, demand) in program.demands.iter().enumerate() {
             let rows = demand.rows(&self.points[index / program.axes]);
             for (row, g) in rows.into_iter().enumerate() {
@@ -93,18 +85,17 @@ impl InteriorPoint {
         &self.controls
     }
 
-    fn iterate(&mut self, program: &Program, accuracy: f64) -> Outcome {
-        for iteration in 0..ITERATIONS {
-            self.iterations = iteration;
+    fn iterate(&mut self, program: &Program, accuracy: f64) -> bool {
+        for _ in 0..ITERATIONS {
             let progress = self.assemble(program);
             let done = progress.gap <= accuracy * progress.duration
                 && progress.dual_residual <= DUAL_RESIDUAL * accuracy * progress.duration
                 && progress.residual <= RESIDUAL;
             if done {
-                return Outcome::Converged;
+                return true;
             }
             if !(progress.duration.is_finite() && progress.gap.is_finite()) {
-                return Outcome::Broken;
+                return false;
             }
             for index in 0..self.controls.len() {
                 if frozen(program, index, self.controls.len()) {
@@ -112,11 +103,11 @@ impl InteriorPoint {
                 }
             }
             if !self.matrix.factor() {
-                return Outcome::Broken;
+                return false;
             }
             self.step(program, &progress);
         }
-        Outcome::OutOfIterations
+        true
     }
 
     fn start(&mut self, program: &Program) {

@@ -2,7 +2,7 @@
 
 use super::check::{Check, Load};
 use super::coordinate::{Coordinate, End};
-use super::interior_point::{InteriorPoint, Outcome};
+use super::interior_point::InteriorPoint;
 use super::motion::{PathState, TimingPiece};
 use super::program::{Demand, Program};
 use super::{JointPath, PathLimits, TimingError, TimingLimits, crude};
@@ -20,7 +20,6 @@ const STRETCH: f64 = 1.0005;
 /// Shares of a limit that a repair leaves: what it aims at, and the least.
 const AIM: f64 = 0.9995;
 const LEAST_SHARE: f64 = 0.2;
-
 /// Slack of the speed limit at a held end; sites next to it whose speed limit is not lowered.
 const HELD_SLACK: f64 = 0.01;
 const HELD_SITES: usize = 20;
@@ -61,7 +60,8 @@ pub(super) struct Workshop {
 }
 
 impl Workshop {
-    /// The fastest motion through the window that was found.
+    /// The fastest motion through the window that was found: on the coordinate of the first guess roughly, then on the
+    /// coordinate of that motion, with limits lowered until the judge is content.
     pub(super) fn pass<const N: usize, P: JointPath<N>>(
         &mut self,
         path: &mut P,
@@ -72,8 +72,8 @@ impl Workshop {
         let coarse = crude::coordinate(path, joints, limits, window, COARSE_STEP)?;
         self.set_sites(path, window, &coarse)?;
         self.set_demands(joints, limits, window, coarse.step);
-        let outcome = self.solver.solve(&self.program, COARSE_ACCURACY);
-        let Some(pieces) = self.pieces(outcome, &coarse, window, limits.speed) else {
+        let solved = self.solver.solve(&self.program, COARSE_ACCURACY);
+        let Some(pieces) = self.pieces(solved, &coarse, window, limits.speed) else {
             return Ok(Passage::NONE);
         };
         let knots = crude::knots(time(&pieces), STEP);
@@ -82,11 +82,11 @@ impl Workshop {
         let mut best = Passage::NONE;
         for round in 0..=REPAIRS {
             self.set_demands(joints, limits, window, coordinate.step);
-            let outcome = match round {
+            let solved = match round {
                 0 => self.solver.solve(&self.program, ACCURACY),
                 _ => self.solver.solve_again(&self.program, ACCURACY),
             };
-            let Some(pieces) = self.pieces(outcome, &coordinate, window, limits.speed) else { break };
+            let Some(pieces) = self.pieces(solved, &coordinate, window, limits.speed) else { break };
             let mut check = Check::new(path, joints, limits);
             let mut loads = Vec::with_capacity(2 * pieces.len());
             for piece in &pieces {
@@ -128,7 +128,7 @@ impl Workshop {
             self.derivatives.push([w.d1, w.d2, w.d3]);
         }
         self.shares.clear();
-        self.shares.resize(self.derivatives.len(), [1.0, 1.0, 1.0]);
+        self.shares.resize(self.derivatives.len(), [1.0; 3]);
         // At a held end the speed is the programmed one, and no unknown can change it.
         for (end, site) in window.ends.into_iter().zip([0, coordinate.sites() - 1]) {
             if end == End::Cruise {
@@ -161,12 +161,12 @@ impl Workshop {
     /// The motion in time that the solution stands for: one piece between two knots. None where it makes no sense.
     fn pieces(
         &self,
-        outcome: Outcome,
+        solved: bool,
         coordinate: &Coordinate,
         window: &Window,
         speed: f64,
     ) -> Option<Vec<TimingPiece>> {
-        if outcome == Outcome::Broken {
+        if !solved {
             return None;
         }
         let controls = self.solver.controls();
@@ -197,7 +197,8 @@ impl Workshop {
                 let end = state(knot + 1);
                 let piece = TimingPiece::joining(&start, &end, step * duration(&controls[knot..knot + 4]));
                 start = end;
-                (piece.duration > 0.0 && piece.duration.is_finite()).then_some(piece)
+                let sound = piece.duration > 0.0 && piece.duration.is_finite() && start.velocity >= 0.0;
+                sound.then_some(piece)
             })
             .collect()
     }
