@@ -15,3 +15,10 @@ pub type Pose = nalgebra::Isometry3<f64>;
 pub type Vector3 = nalgebra::Vector3<f64>;
 /// A rotation as unit quaternion.
 pub type Rotation = nalgebra::UnitQuaternion<f64>;
+
+/// Whether every coordinate of a pose is a finite number.
+#[inline]
+#[must_use]
+pub fn is_finite(pose: &Pose) -> bool {
+    (pose.translation.vector.sum() + pose.rotation.coords.sum()).is_finite()
+}

@@ -1,6 +1,6 @@
 //! A pose with its first three derivatives along a parameter.
 
-use super::{Pose, Vector3};
+use super::{Pose, Vector3, is_finite};
 
 /// A moving pose at one instant: its value and its first three derivatives with respect to a parameter (a path
 /// coordinate, or time). Vectors are given in the pose's parent frame.
@@ -19,6 +19,14 @@ impl PoseJet {
     #[must_use]
     pub fn at_rest(pose: Pose) -> Self {
         Self { pose, linear: [Vector3::zeros(); 3], angular: [Vector3::zeros(); 3] }
+    }
+
+    /// Whether every coordinate of the pose and of its derivatives is a finite number.
+    #[inline]
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let vectors = self.linear.iter().chain(&self.angular);
+        is_finite(&self.pose) && vectors.map(Vector3::sum).sum::<f64>().is_finite()
     }
 
     /// The jet of `self · offset`, for a frame that is rigidly attached: from the tool centre point's motion to the

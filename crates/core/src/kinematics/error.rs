@@ -40,6 +40,20 @@ pub enum InverseError {
         /// Angle by which the nearest orientation misses.
         angle: f64,
     },
+    /// The flange would have to move in a direction that fewer than six joints do not have.
+    NotFollowed {
+        /// Length of the twist (metres and radians per unit of the parameter, or its derivative) left over.
+        missing: f64,
+    },
+    /// The numeric solver came no nearer.
+    NotConverged {
+        /// Iterations taken, over all starts.
+        iterations: usize,
+        /// Distance left from the best start, in metres.
+        position_residual: f64,
+        /// Angle left from it, in radians.
+        rotation_residual: f64,
+    },
     /// Every branch passes a joint's limit. Evidence is of the branch nearest to the seed.
     PositionLimit {
         /// Index of the joint that passes its limit furthest.
@@ -56,7 +70,7 @@ pub enum InverseError {
         /// Which singularity.
         singularity: Singularity,
         /// Its distance measure: |sin θ5| at the wrist, |sin| of the angle between the links at the elbow, metres
-        /// at the shoulder, the least pivot for a general chain.
+        /// at the shoulder; for a general chain what is left of a Jacobian's column outside the others' span.
         distance: f64,
     },
 }
@@ -66,6 +80,11 @@ pub enum InverseError {
 pub enum ModelError {
     /// A dimension, offset or frame is not a finite number.
     NotFinite,
+    /// A joint's axis has no direction.
+    Axis {
+        /// Index of the joint.
+        axis: usize,
+    },
     /// A length that must be positive.
     Length {
         /// The length in metres.

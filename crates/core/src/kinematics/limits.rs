@@ -2,10 +2,12 @@
 
 use core::f64::consts::{PI, TAU};
 
-use super::ModelError;
+use super::branches::{Branches, nearest};
+use super::{InverseError, JointKind, ModelError};
 use crate::math::float::{ceil, floor, round};
 
-/// A position this little beyond its limit is rounding, and is set onto the limit. Radians; 2 pm at 2 m.
+/// A position this little beyond its limit is rounding, and is set onto the limit. Radians (2 pm at 2 m), or
+/// metres.
 const ROUNDING: f64 = 1e-12;
 
 /// Position and velocity limits of N joints.
@@ -58,6 +60,60 @@ impl<const N: usize> JointLimits<N> {
         &self.velocity
     }
 
+    /// Each joint within its limits, a turning joint in the turn nearest to the reference. Nothing if one cannot be.
+    #[inline]
+    pub(super) fn turned_within(
+        &self,
+        q: &[f64; N],
+        reference: &[f64; N],
+        kinds: &[JointKind; N],
+    ) -> Option<[f64; N]> {
+        let mut turned = *q;
+        for (axis, position) in turned.iter_mut().enumerate() {
+            let (min, max) = self.position[axis];
+            *position = match kinds[axis] {
+                JointKind::Revolute => nearest_turn_within(*position, reference[axis], (min, max))?,
+                JointKind::Prismatic => within((min, max), *position)?,
+            };
+        }
+        Some(turned)
+    }
+
+    /// Of several joint positions those within the limits, in the turns nearest to the reference; where there is none,
+    /// what keeps the one nearest to it outside.
+    pub(super) fn branches_within<const MAX: usize>(
+        &self,
+        all: &[[f64; N]],
+        reference: &[f64; N],
+        kinds: &[JointKind; N],
+    ) -> Result<Branches<[f64; N], MAX>, InverseError> {
+        let mut kept = Branches::none(*reference);
+        all.iter().filter_map(|q| self.turned_within(q, reference, kinds)).for_each(|q| kept.push(q));
+        if kept.as_slice().is_empty() {
+            let turned = |q: &[f64; N]| core::array::from_fn(|i| nearest_turn(q[i], reference[i]));
+            let q = nearest(all.iter().map(turned), reference).unwrap_or(*reference);
+            return Err(self.worst_violation(&q, kinds));
+        }
+        Ok(kept)
+    }
+
+    /// Of joint positions that are not within the limits in any turn: the joint furthest outside.
+    #[cold]
+    pub(super) fn worst_violation(&self, q: &[f64; N], kinds: &[JointKind; N]) -> InverseError {
+        let (mut worst, mut most) = ((0, 0.0, (0.0, 0.0)), -1.0);
+        for (axis, (&position, &(min, max))) in q.iter().zip(&self.position).enumerate() {
+            let (value, excess) = match kinds[axis] {
+                JointKind::Revolute => least_excess_turn(position, (min, max)),
+                JointKind::Prismatic => (position, (min - position).max(position - max)),
+            };
+            if excess > most {
+                (worst, most) = ((axis, value, (min, max)), excess);
+            }
+        }
+        let (axis, value, (min, max)) = worst;
+        InverseError::PositionLimit { axis, value, min, max }
+    }
+
     /// The first joint that passes its limit, with its position.
     #[must_use]
     pub fn first_violation(&self, q: &[f64; N]) -> Option<(usize, f64)> {
@@ -80,7 +136,13 @@ pub(super) fn nearest_turn_within(angle: f64, reference: f64, (min, max): (f64, 
     } else {
         nearest
     };
-    (turned >= min - ROUNDING && turned <= max + ROUNDING).then(|| turned.max(min).min(max))
+    within((min, max), turned)
+}
+
+/// The position, within (min, max) but for rounding.
+#[inline]
+fn within((min, max): (f64, f64), position: f64) -> Option<f64> {
+    (position >= min - ROUNDING && position <= max + ROUNDING).then(|| position.max(min).min(max))
 }
 
 /// The angle equal to `angle` modulo full turns that lies nearest to `reference`.

@@ -1,15 +1,20 @@
 //! Built-in arms.
 
-use core::f64::consts::FRAC_PI_2;
+use core::f64::consts::{FRAC_PI_2, PI};
 
-use super::{JointLimits, OpwParameters, SphericalWristArm, SphericalWristGeometry};
-use crate::geometry::{Pose, Rotation};
+use super::chain::description::from_dh;
+use super::{
+    DhConvention, DhRow, JointKind, JointLimits, OpwParameters, ScaraArm, ScaraGeometry, SerialChain,
+    SphericalWristArm, SphericalWristGeometry,
+};
+use crate::geometry::{Pose, Rotation, Vector3};
 
 /// A Yaskawa AR2010/MA2010-class arc-welding arm: reach 2.01 m, joints S, L, U, R, B, T.
 ///
 /// The base frame's origin lies on axis 1 at the height of axis 2, 505 mm above the floor. At zero the upper arm
 /// stands up and the forearm points along +x: flange at (1.332, 0, 0.960) m, its z axis along +x and its x axis along
 /// +z. Joint axes at zero: z, y, −y, −x, −y, −x.
+#[must_use]
 pub fn ar2010() -> SphericalWristArm {
     let geometry = SphericalWristGeometry {
         shoulder_offset: 0.150,
@@ -19,7 +24,7 @@ pub fn ar2010() -> SphericalWristArm {
         lateral_offset: 0.0,
         base_from_shoulder: Pose::identity(),
         // Half a turn about z: the maker's flange x axis points up where the forearm lies level.
-        wrist_from_flange: Pose::from_parts([0.0, 0.0, 0.100].into(), half_turn_about_z()),
+        wrist_from_flange: Pose::from_parts([0.0, 0.0, 0.100].into(), half_turn(2)),
         signs: [1.0, 1.0, -1.0, -1.0, -1.0, -1.0],
         zeros: [0.0, 0.0, FRAC_PI_2, 0.0, 0.0, 0.0],
     };
@@ -31,6 +36,7 @@ pub fn ar2010() -> SphericalWristArm {
 }
 
 /// The ABB IRB 2400/10 arm, 1.55 m: the usual yardstick for closed-form inverse kinematics.
+#[must_use]
 pub fn irb2400() -> SphericalWristArm {
     let parameters = OpwParameters {
         a1: 0.100,
@@ -50,8 +56,46 @@ pub fn irb2400() -> SphericalWristArm {
     SphericalWristArm::of_valid(parameters.geometry(), limits)
 }
 
-fn half_turn_about_z() -> Rotation {
-    Rotation::new_unchecked(nalgebra::Quaternion::new(0.0, 0.0, 0.0, 1.0))
+/// A Universal Robots UR5e: no spherical wrist; DH parameters as the maker publishes them.
+#[must_use]
+pub fn ur5e() -> SerialChain<6> {
+    let row = |a, alpha, d| DhRow { a, alpha, d, theta: 0.0, kind: JointKind::Revolute };
+    let rows = [
+        row(0.0, FRAC_PI_2, 0.1625),
+        row(-0.425, 0.0, 0.0),
+        row(-0.3922, 0.0, 0.0),
+        row(0.0, FRAC_PI_2, 0.1333),
+        row(0.0, -FRAC_PI_2, 0.0997),
+        row(0.0, 0.0, 0.0996),
+    ];
+    let limits = limits_from_degrees([(-360.0, 360.0); 6], [180.0; 6]);
+    let (joints, flange) = from_dh(&rows, DhConvention::Standard);
+    SerialChain::of_z_joints(&joints, &flange, limits)
+}
+
+/// A SCARA arm of 600 mm: links of 325 and 275 mm, flange looking down, joint 3 zero at the top.
+///
+/// At zero the arm is stretched along +x: flange at (0.6, 0, 0) m, its z axis along −z.
+#[must_use]
+pub fn scara600() -> ScaraArm {
+    let geometry = ScaraGeometry {
+        upper_arm: 0.325,
+        forearm: 0.275,
+        base_from_shoulder: Pose::identity(),
+        last_from_flange: Pose::from_parts(Vector3::zeros().into(), half_turn(0)),
+    };
+    let (degree, turn) = (PI / 180.0, 2.0 * PI);
+    let position =
+        [(-132.0 * degree, 132.0 * degree), (-160.0 * degree, 160.0 * degree), (-0.200, 0.0), (-turn, turn)];
+    let velocity = [240.0 * degree, 360.0 * degree, 1.0, 5.0 * turn];
+    ScaraArm::of_valid(geometry, JointLimits::of_valid(position, velocity))
+}
+
+/// Half a turn about an axis of the frame, without rounding.
+fn half_turn(axis: usize) -> Rotation {
+    let mut imaginary = Vector3::zeros();
+    imaginary[axis] = 1.0;
+    Rotation::new_unchecked(nalgebra::Quaternion::from_imag(imaginary))
 }
 
 fn limits_from_degrees<const N: usize>(

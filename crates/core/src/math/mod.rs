@@ -1,4 +1,5 @@
 //! Elementary functions and small numeric tools.
 
 pub mod float;
+pub mod linear;
 pub mod taylor;

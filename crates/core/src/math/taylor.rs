@@ -33,6 +33,14 @@ impl Taylor {
         self.0[0]
     }
 
+    /// The same derivatives with another value: where that is known better.
+    #[inline]
+    #[must_use]
+    pub fn with_value(self, value: f64) -> Self {
+        let [_, c1, c2, c3] = self.0;
+        Self([value, c1, c2, c3])
+    }
+
     /// First, second and third derivative.
     #[inline]
     #[must_use]

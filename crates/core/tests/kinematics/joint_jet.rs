@@ -3,7 +3,7 @@
 use seamline::geometry::{Pose, PoseJet, Rotation, Vector3};
 use seamline::kinematics::{InverseError, JointJet, Kinematics, Singularity, models};
 
-use crate::support::{Random, pose_error};
+use crate::support::{Random, joint_error, pose_error};
 
 fn random_jet(random: &mut Random, pose: Pose) -> PoseJet {
     PoseJet {
@@ -102,4 +102,63 @@ fn stretched_arm_and_wrist_centre_on_axis_1() {
         matches!(error, Err(InverseError::Singular { singularity: Singularity::Elbow, .. })),
         "{error:?}"
     );
+    // θ₂ such that the upper arm and the line to the wrist end above axis 1: a₁ + c₂ sin θ₂ + … = 0 by Newton.
+    let mut over_head = [0.2, -0.5, 0.4, 0.3, -0.9, 0.1];
+    for _ in 0..20 {
+        let axes = arm.axes(&over_head);
+        let centre = axes.axes[4].point;
+        let out = centre.x * 0.2_f64.cos() + centre.y * 0.2_f64.sin();
+        over_head[1] -= out / (centre.z - axes.axes[1].point.z);
+    }
+    let mut sideways = PoseJet::at_rest(arm.forward(&over_head));
+    assert_eq!(arm.joint_jet(&sideways, &over_head), Ok(JointJet::at_rest(over_head)));
+    sideways.linear[0] = Vector3::x();
+    let error = arm.joint_jet(&sideways, &over_head);
+    assert!(
+        matches!(error, Err(InverseError::Singular { singularity: Singularity::Shoulder, .. })),
+        "{error:?}"
+    );
+}
+
+/// An arm that moves in its own plane passes the wrist's pole and axis 1 without noticing: joints 1, 4 and 6 rest, and
+/// all derivatives exist, at the singularity and beside it.
+#[test]
+fn in_its_own_plane_an_arm_passes_its_singularities() {
+    let arm = models::ar2010();
+    let joints = |q2: f64, q5: f64| JointJet {
+        position: [0.0, q2, 0.4, 0.0, q5, 0.0],
+        velocity: [0.0, 0.3, -0.2, 0.0, 0.7, 0.0],
+        acceleration: [0.0, -0.4, 0.1, 0.0, 0.2, 0.0],
+        jerk: [0.0, 0.1, 0.5, 0.0, -0.3, 0.0],
+    };
+    // Joint 2 with the wrist centre over axis 1.
+    let mut over_head = -0.5;
+    for _ in 0..20 {
+        let axes = arm.axes(&joints(over_head, 0.3).position).axes;
+        over_head -= axes[4].point.x / (axes[4].point.z - axes[1].point.z);
+    }
+    for offset in [0.0, 1e-15, 1e-12, 1e-9, -1e-6, 1e-3] {
+        for joints in [joints(0.2, offset), joints(over_head + offset, 0.3), joints(over_head, offset)] {
+            let motion = arm.axes(&joints.position).forward_jet(&joints);
+            let back = arm.joint_jet(&motion, &joints.position).unwrap();
+            for (got, expected) in [
+                (back.velocity, joints.velocity),
+                (back.acceleration, joints.acceleration),
+                (back.jerk, joints.jerk),
+            ] {
+                assert!(joint_error(&got, &expected) < 1e-11, "{offset:e} {back:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn numbers_that_are_not_finite_are_named() {
+    let arm = models::ar2010();
+    let q = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6];
+    let mut motion = PoseJet::at_rest(arm.forward(&q));
+    motion.angular[2].y = f64::NAN;
+    assert_eq!(arm.joint_jet(&motion, &q), Err(InverseError::NotFinite));
+    assert_eq!(models::ur5e().joint_jet(&motion, &q), Err(InverseError::NotFinite));
+    assert_eq!(models::scara600().joint_jet(&motion, &[0.1; 4]), Err(InverseError::NotFinite));
 }

@@ -1,22 +1,19 @@
 //! Exact joint derivatives: the closed-form inverse, on the branch of given joint positions, in Taylor arithmetic.
 //!
-//! Values come from the joint positions, derivatives from the flange's motion. Where a root vanishes the branch
-//! meets another and has no derivatives, unless what it depends on stands still: then the joint does too.
+//! Values come from the joint positions, derivatives from the flange's motion: beside a singularity the joints are known
+//! better than the rounded pose says. Where a root vanishes the branch meets another and has no derivatives, unless the
+//! motion stands still there or passes straight through (an arm that moves in its own plane): then it has.
 
 use super::SphericalWristArm;
-use super::inverse::ON_AXIS;
 use crate::geometry::{PoseJet, Vector3};
+use crate::kinematics::closed_form::{Polar, STILL};
 use crate::kinematics::{InverseError, JointJet, Singularity};
-use crate::math::float::{cos, sin, sqrt};
+use crate::math::float::{sin_cos, sqrt};
 use crate::math::taylor::Taylor;
 
-/// A measure of distance below this is zero but for rounding.
-const VANISHING: f64 = 1e-12;
-/// A root of what is itself known to rounding, below this: the elbow is bent by less than 1e-7 rad where the wrist
-/// is within 1e-14 of the reach.
+/// With a lateral offset the wrist centre's radial coordinate is a root of what is itself known to rounding: it is zero
+/// but for that below this, per root of offset and reach.
 const VANISHING_ROOT: f64 = 1e-7;
-/// What varies by less than this part of the whole motion stands still.
-const STILL: f64 = 1e-12;
 
 /// The wrist's motion in the shoulder frame.
 struct WristMotion {
@@ -37,18 +34,20 @@ struct QuaternionSeries {
 
 impl SphericalWristArm {
     pub(super) fn jet(&self, base_from_flange: &PoseJet, q: &[f64; 6]) -> Result<JointJet<6>, InverseError> {
+        if !(base_from_flange.is_finite() && q.iter().sum::<f64>().is_finite()) {
+            return Err(InverseError::NotFinite);
+        }
         let theta = self.thetas(q);
         let motion = self.wrist_motion(base_from_flange);
         let (theta1, out) = self.shoulder_series(&motion, &theta)?;
-        let (theta2, theta3) = self.link_series(&motion, out, &theta)?;
+        let values = [theta[1], theta[2] + self.elbow_angle];
+        let still = STILL * motion.variation;
+        let [theta2, bend] = self.links.series([out, motion.centre[2]], values, still)?;
+        let theta3 = bend + -self.elbow_angle;
         let wrist = motion.rotation.unturned_z(theta1).unturned_y(theta2 + theta3);
         let [theta4, theta5, theta6] = wrist_series(&motion, &wrist, &theta)?;
-        let mut jet = JointJet::at_rest(*q);
-        for (axis, series) in [theta1, theta2, theta3, theta4, theta5, theta6].iter().enumerate() {
-            let derivatives = series.derivatives().map(|d| d * self.geometry.signs[axis]);
-            [jet.velocity[axis], jet.acceleration[axis], jet.jerk[axis]] = derivatives;
-        }
-        Ok(jet)
+        let series = [theta1, theta2, theta3, theta4, theta5, theta6];
+        Ok(JointJet::of_series(*q, core::array::from_fn(|i| series[i] * self.geometry.signs[i])))
     }
 
     #[inline]
@@ -58,7 +57,7 @@ impl SphericalWristArm {
         let [d1, d2, d3] = jet.linear;
         let centre = [0, 1, 2].map(|i| Taylor::from_derivatives(position[i], d1[i], d2[i], d3[i]));
         let rotation = QuaternionSeries::of(&jet);
-        let reach = self.geometry.upper_arm + self.elbow_to_wrist;
+        let reach = self.links.reach();
         let moved = centre.iter().fold(0.0, |most: f64, c| most.max(c.variation())) / reach;
         let variation = moved.max(rotation.variation());
         WristMotion { centre, rotation, variation }
@@ -71,62 +70,32 @@ impl SphericalWristArm {
         motion: &WristMotion,
         theta: &[f64; 6],
     ) -> Result<(Taylor, Taylor), InverseError> {
-        let g = &self.geometry;
-        let reach = g.upper_arm + self.elbow_to_wrist;
+        let (reach, offset) = (self.links.reach(), self.geometry.lateral_offset);
         let [x, y, _] = motion.centre;
-        let b = g.lateral_offset;
         let value = self.wrist_radius(theta);
-        let vanishing = (VANISHING * reach).max(VANISHING_ROOT * sqrt(b.abs() * reach));
-        if value.abs() <= vanishing {
-            if x.variation().max(y.variation()) <= STILL * reach * motion.variation {
-                return Ok((Taylor::constant(theta[0]), Taylor::constant(value - g.shoulder_offset)));
-            }
-            return Err(InverseError::Singular { singularity: Singularity::Shoulder, distance: value.abs() });
-        }
-        let radial = (x.squared() + y.squared()).sqrt_from(value);
-        let theta1 = Taylor::angle(x * radial + y * b, y * radial + x * -b, theta[0]);
-        Ok((theta1, radial + -g.shoulder_offset))
-    }
-
-    /// θ₂ and θ₃.
-    #[inline]
-    fn link_series(
-        &self,
-        motion: &WristMotion,
-        out: Taylor,
-        theta: &[f64; 6],
-    ) -> Result<(Taylor, Taylor), InverseError> {
-        let (upper, fore) = (self.geometry.upper_arm, self.elbow_to_wrist);
-        let up = motion.centre[2];
-        let bend = theta[2] + self.elbow_angle;
-        let sin_value = sin(bend);
-        let distance_squared = out.squared() + up.squared();
-        let cos_bend = (distance_squared + -(upper * upper + fore * fore)) * (0.5 / (upper * fore));
-        let (sin_bend, theta3) = if sin_value.abs() > VANISHING_ROOT {
-            let sin_bend = (-cos_bend.squared()).sqrt_from(sin_value);
-            (sin_bend, Taylor::angle(cos_bend, sin_bend, bend) + -self.elbow_angle)
-        } else if cos_bend.variation() <= STILL * motion.variation {
-            let on_axis = ON_AXIS * (upper + fore);
-            if distance_squared.value() <= on_axis * on_axis {
-                return Ok((Taylor::constant(theta[1]), Taylor::constant(theta[2])));
-            }
-            (Taylor::constant(sin_value), Taylor::constant(theta[2]))
+        let singular = InverseError::Singular { singularity: Singularity::Shoulder, distance: value.abs() };
+        let (theta1, radial) = if offset == 0.0 {
+            let polar = Polar::of([x, y], value, theta[0], reach, motion.variation).ok_or(singular)?;
+            (polar.angle, polar.radius)
+        } else if value.abs() > VANISHING_ROOT * sqrt(offset.abs() * reach) {
+            let (sin1, cos1) = sin_cos(theta[0]);
+            let x = x.with_value(cos1 * value - sin1 * offset);
+            let y = y.with_value(sin1 * value + cos1 * offset);
+            let radial = (x.squared() + y.squared()).sqrt_from(value);
+            (Taylor::angle(x * radial + y * offset, y * radial + x * -offset, theta[0]), radial)
+        } else if x.variation().max(y.variation()) <= STILL * reach * motion.variation {
+            (Taylor::constant(theta[0]), Taylor::constant(value))
         } else {
-            let distance = sin_value.abs();
-            return Err(InverseError::Singular { singularity: Singularity::Elbow, distance });
+            return Err(singular);
         };
-        // The wrist as seen from the upper arm, `along` it and `across`.
-        let along = cos_bend * fore + upper;
-        let across = sin_bend * fore;
-        let theta2 = Taylor::angle(up * along + out * across, out * along - up * across, theta[1]);
-        Ok((theta2, theta3))
+        Ok((theta1, radial + -self.geometry.shoulder_offset))
     }
 }
 
-/// θ₄, θ₅ and θ₆ of the wrist's rotation relative to the forearm.
+/// θ₄, θ₅ and θ₆ of the wrist's rotation h relative to the forearm.
 ///
 /// The same components as in the inverse itself: with σ, δ half the sum and half the difference of θ₄ and θ₆, the
-/// quaternion is (cos(θ₅/2) cos σ, −sin(θ₅/2) sin δ, sin(θ₅/2) cos δ, cos(θ₅/2) sin σ).
+/// quaternion is (cos(θ₅/2) cos σ, −sin(θ₅/2) sin δ, sin(θ₅/2) cos δ, cos(θ₅/2) sin σ), or the negative of that.
 #[inline]
 fn wrist_series(
     motion: &WristMotion,
@@ -134,29 +103,31 @@ fn wrist_series(
     theta: &[f64; 6],
 ) -> Result<[Taylor; 3], InverseError> {
     let [_, _, _, theta4, theta5, theta6] = *theta;
-    let sin5 = sin(theta5);
-    let still = STILL * motion.variation;
-    if sin5.abs() <= VANISHING {
-        let held = (Taylor::constant(theta4), Taylor::constant(theta5));
-        let upright = cos(theta5) > 0.0;
-        if upright && h.x.variation().max(h.y.variation()) <= still {
-            let sum = Taylor::angle(h.w, h.z, 0.5 * (theta4 + theta6)) * 2.0;
-            return Ok([held.0, held.1, sum - held.0]);
-        }
-        if !upright && h.w.variation().max(h.z.variation()) <= still {
-            let difference = Taylor::angle(h.y, -h.x, 0.5 * (theta4 - theta6)) * 2.0;
-            return Ok([held.0, held.1, held.0 - difference]);
-        }
-        return Err(InverseError::Singular { singularity: Singularity::Wrist, distance: sin5.abs() });
+    let (sum, difference) = (0.5 * (theta4 + theta6), 0.5 * (theta4 - theta6));
+    let (sin, cos) = sin_cos(0.5 * theta5);
+    let (straight, bent) = ([h.w, h.z], [h.y, -h.x]);
+    let sign = 1.0_f64.copysign(cos * towards(straight, sum) + sin * towards(bent, difference));
+    let distance = 2.0 * (sin * cos).abs();
+    let singular = InverseError::Singular { singularity: Singularity::Wrist, distance };
+    let polar = |point, radius, angle| Polar::of(point, radius, angle, 1.0, motion.variation).ok_or(singular);
+    let (straight, bent) = (polar(straight, sign * cos, sum)?, polar(bent, sign * sin, difference)?);
+    let theta5 = Taylor::angle(straight.radius, bent.radius, 0.5 * theta5) * 2.0;
+    // A wrist that rests at its pole keeps θ₄, and turns by θ₆ alone.
+    let theta4_held = Taylor::constant(theta4);
+    if bent.at_rest {
+        return Ok([theta4_held, theta5, straight.angle * 2.0 - theta4_held]);
     }
-    let half_sum = Taylor::angle(h.w, h.z, 0.5 * (theta4 + theta6));
-    let half_difference = Taylor::angle(h.y, -h.x, 0.5 * (theta4 - theta6));
-    // cos θ₅ and sin θ₅, from the squares of cos(θ₅/2) and sin(θ₅/2).
-    let straight = h.w.squared() + h.z.squared();
-    let bent = h.x.squared() + h.y.squared();
-    let half_sine = (straight * bent).sqrt_from(0.5 * sin5);
-    let theta5 = Taylor::angle(straight - bent, half_sine * 2.0, theta5);
-    Ok([half_sum + half_difference, theta5, half_sum - half_difference])
+    if straight.at_rest {
+        return Ok([theta4_held, theta5, theta4_held - bent.angle * 2.0]);
+    }
+    Ok([straight.angle + bent.angle, theta5, straight.angle - bent.angle])
+}
+
+/// The coordinate of a point along a direction.
+#[inline]
+fn towards([x, y]: [Taylor; 2], angle: f64) -> f64 {
+    let (sin, cos) = sin_cos(angle);
+    x.value() * cos + y.value() * sin
 }
 
 impl QuaternionSeries {

@@ -9,15 +9,20 @@
 mod inverse;
 mod jet;
 mod posture;
+mod singularity;
 mod solutions;
 
 pub use posture::{Configuration, Elbow, Posture, Shoulder, Wrist};
+pub use singularity::SingularityDistances;
 pub use solutions::{Solution, Solutions};
 
 use nalgebra::{Quaternion, UnitQuaternion};
 
-use super::{InverseError, JointJet, JointLimits, Kinematics, ModelError};
-use crate::geometry::{Pose, PoseJet, Rotation, Vector3};
+use super::closed_form::TwoLink;
+use super::{
+    Branches, InverseError, JointAxes, JointAxis, JointJet, JointKind, JointLimits, Kinematics, ModelError,
+};
+use crate::geometry::{Pose, PoseJet, Vector3, is_finite};
 use crate::math::float::{atan2, hypot, sin_cos};
 
 /// The arm's dimensions (metres) and where its zero lies. Plain data; [`SphericalWristArm::try_new`] checks it.
@@ -90,8 +95,8 @@ impl OpwParameters {
 pub struct SphericalWristArm {
     geometry: SphericalWristGeometry,
     limits: JointLimits<6>,
-    /// Distance from axis 3 to the wrist centre.
-    elbow_to_wrist: f64,
+    /// Upper arm, and the line from axis 3 to the wrist centre.
+    links: TwoLink,
     /// Angle of the wrist centre about axis 3 at θ₃ = 0, with its sine and cosine.
     elbow_angle: f64,
     elbow_sin: f64,
@@ -130,7 +135,7 @@ impl SphericalWristArm {
         let g = &geometry;
         let elbow_to_wrist = hypot(g.elbow_offset, g.forearm);
         Self {
-            elbow_to_wrist,
+            links: TwoLink { upper: g.upper_arm, fore: elbow_to_wrist },
             elbow_angle: atan2(g.elbow_offset, g.forearm),
             elbow_sin: g.elbow_offset / elbow_to_wrist,
             elbow_cos: g.forearm / elbow_to_wrist,
@@ -150,7 +155,7 @@ impl SphericalWristArm {
     /// Distance from axis 3 to the wrist centre, in metres.
     #[must_use]
     pub fn elbow_to_wrist(&self) -> f64 {
-        self.elbow_to_wrist
+        self.links.fore
     }
 
     /// The arm's limits.
@@ -166,42 +171,123 @@ impl SphericalWristArm {
         core::array::from_fn(|i| g.signs[i] * q[i] + g.zeros[i])
     }
 
+    /// Sines and cosines at joint positions q: of half angles where the quaternion needs them.
+    #[inline]
+    fn trigonometry(&self, q: &[f64; 6]) -> Trigonometry {
+        let [t1, t2, t3, t4, t5, t6] = self.thetas(q);
+        Trigonometry {
+            half1: sin_cos(0.5 * t1),
+            half23: sin_cos(0.5 * (t2 + t3)),
+            theta2: sin_cos(t2),
+            half5: sin_cos(0.5 * t5),
+            half_sum46: sin_cos(0.5 * (t4 + t6)),
+            half_difference46: sin_cos(0.5 * (t4 - t6)),
+        }
+    }
+
+    /// The wrist centre's coordinates from axis 1, in the arm's plane: (out, up).
+    #[inline]
+    fn wrist_in_plane(&self, t: &Trigonometry) -> (f64, f64) {
+        let g = &self.geometry;
+        let ((sin2, cos2), (sin23, cos23)) = (t.theta2, doubled(t.half23));
+        let out = g.shoulder_offset + g.upper_arm * sin2 + g.elbow_offset * cos23 + g.forearm * sin23;
+        let up = g.upper_arm * cos2 - g.elbow_offset * sin23 + g.forearm * cos23;
+        (out, up)
+    }
+
     /// The wrist's pose in the shoulder frame.
     ///
     /// R = Rz(θ₁)·Ry(θ₂+θ₃) · Rz(θ₄)·Ry(θ₅)·Rz(θ₆) as quaternions: of half angles, so that no normalization and no
     /// conversion from a matrix is needed.
     #[inline]
-    fn shoulder_from_wrist(&self, q: &[f64; 6]) -> Pose {
-        let g = &self.geometry;
-        let [t1, t2, t3, t4, t5, t6] = self.thetas(q);
-        let (s1, c1) = sin_cos(0.5 * t1);
-        let (s23, c23) = sin_cos(0.5 * (t2 + t3));
-        let (s2, c2) = sin_cos(t2);
-        let (s5, c5) = sin_cos(0.5 * t5);
-        let (s_sum, c_sum) = sin_cos(0.5 * (t4 + t6));
-        let (s_difference, c_difference) = sin_cos(0.5 * (t4 - t6));
+    fn shoulder_from_wrist(&self, t: &Trigonometry) -> Pose {
+        let ((s1, c1), (s23, c23), (s5, c5)) = (t.half1, t.half23, t.half5);
+        let ((s_sum, c_sum), (s_difference, c_difference)) = (t.half_sum46, t.half_difference46);
         let arm = Quaternion::new(c1 * c23, -s1 * s23, c1 * s23, s1 * c23);
         let wrist = Quaternion::new(c5 * c_sum, -s5 * s_difference, s5 * c_difference, c5 * s_sum);
-        // Full angles by doubling.
-        let (sin1, cos1) = (2.0 * s1 * c1, c1 * c1 - s1 * s1);
-        let (sin23, cos23) = (2.0 * s23 * c23, c23 * c23 - s23 * s23);
-        let out = g.shoulder_offset + g.upper_arm * s2 + g.elbow_offset * cos23 + g.forearm * sin23;
-        let up = g.upper_arm * c2 - g.elbow_offset * sin23 + g.forearm * cos23;
-        let position =
-            Vector3::new(cos1 * out - sin1 * g.lateral_offset, sin1 * out + cos1 * g.lateral_offset, up);
+        let (out, up) = self.wrist_in_plane(t);
+        let position = turned_z(doubled(t.half1), [out, self.geometry.lateral_offset, up]);
         Pose::from_parts(position.into(), UnitQuaternion::new_unchecked(arm * wrist))
     }
+}
+
+/// (sin, cos) pairs.
+struct Trigonometry {
+    half1: (f64, f64),
+    half23: (f64, f64),
+    theta2: (f64, f64),
+    half5: (f64, f64),
+    half_sum46: (f64, f64),
+    half_difference46: (f64, f64),
+}
+
+/// (sin, cos) of the double angle.
+#[inline]
+fn doubled((sin, cos): (f64, f64)) -> (f64, f64) {
+    (2.0 * sin * cos, cos * cos - sin * sin)
+}
+
+/// Rz·v, for an angle's (sin, cos).
+#[inline]
+fn turned_z((sin, cos): (f64, f64), [x, y, z]: [f64; 3]) -> Vector3 {
+    Vector3::new(cos * x - sin * y, sin * x + cos * y, z)
 }
 
 impl Kinematics<6> for SphericalWristArm {
     #[inline]
     fn forward(&self, q: &[f64; 6]) -> Pose {
         let g = &self.geometry;
-        g.base_from_shoulder * self.shoulder_from_wrist(q) * g.wrist_from_flange
+        g.base_from_shoulder * self.shoulder_from_wrist(&self.trigonometry(q)) * g.wrist_from_flange
+    }
+
+    #[inline]
+    fn axes(&self, q: &[f64; 6]) -> JointAxes<6> {
+        let g = &self.geometry;
+        let t = self.trigonometry(q);
+        let base_from_wrist = g.base_from_shoulder * self.shoulder_from_wrist(&t);
+        let (theta1, (sin2, cos2), (sin23, cos23)) = (doubled(t.half1), t.theta2, doubled(t.half23));
+        let (sin5, cos5) = doubled(t.half5);
+        // θ₄ is the sum of half the sum and half the difference of θ₄ and θ₆.
+        let ((s_sum, c_sum), (s_difference, c_difference)) = (t.half_sum46, t.half_difference46);
+        let sin4 = s_sum * c_difference + c_sum * s_difference;
+        let cos4 = c_sum * c_difference - s_sum * s_difference;
+        let turned = |v| g.base_from_shoulder.rotation * turned_z(theta1, v);
+        let origin = g.base_from_shoulder.translation.vector;
+        let elbow_out = g.shoulder_offset + g.upper_arm * sin2;
+        let across = turned([0.0, 1.0, 0.0]);
+        let last = [cos23 * cos4 * sin5 + sin23 * cos5, sin4 * sin5, cos23 * cos5 - sin23 * cos4 * sin5];
+        let shoulder = origin + turned([g.shoulder_offset, 0.0, 0.0]);
+        let elbow = origin + turned([elbow_out, 0.0, g.upper_arm * cos2]);
+        let centre = base_from_wrist.translation.vector;
+        let lines = [
+            (turned([0.0, 0.0, 1.0]), origin),
+            (across, shoulder),
+            (across, elbow),
+            (turned([sin23, 0.0, cos23]), centre),
+            (turned([-sin4 * cos23, cos4, sin4 * sin23]), centre),
+            (turned(last), centre),
+        ];
+        let axis = |i: usize| JointAxis {
+            direction: lines[i].0 * g.signs[i],
+            point: lines[i].1,
+            kind: JointKind::Revolute,
+        };
+        JointAxes {
+            axes: core::array::from_fn(axis),
+            base_from_flange: base_from_wrist * g.wrist_from_flange,
+        }
     }
 
     fn inverse_nearest(&self, base_from_flange: &Pose, seed: &[f64; 6]) -> Result<[f64; 6], InverseError> {
         self.nearest(base_from_flange, seed)
+    }
+
+    fn inverse_branches(
+        &self,
+        base_from_flange: &Pose,
+        reference: &[f64; 6],
+    ) -> Result<Branches<[f64; 6], 8>, InverseError> {
+        Ok(self.inverse_within_limits(base_from_flange, reference)?.map(|solution| solution.q))
     }
 
     fn joint_jet(&self, base_from_flange: &PoseJet, q: &[f64; 6]) -> Result<JointJet<6>, InverseError> {
@@ -215,11 +301,4 @@ impl Kinematics<6> for SphericalWristArm {
     fn velocity_limits(&self) -> &[f64; 6] {
         self.limits.velocity()
     }
-}
-
-/// Whether every coordinate is a finite number.
-#[inline]
-fn is_finite(pose: &Pose) -> bool {
-    let rotation: &Rotation = &pose.rotation;
-    (pose.translation.vector.sum() + rotation.coords.sum()).is_finite()
 }

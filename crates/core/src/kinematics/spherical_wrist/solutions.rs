@@ -5,8 +5,9 @@ use core::f64::consts::PI;
 use super::inverse::{Links, Side, Target, named};
 use super::{Configuration, Elbow, Posture, Shoulder, SphericalWristArm, Wrist};
 use crate::geometry::Pose;
-use crate::kinematics::InverseError;
+use crate::kinematics::branches::{Branches, nearest};
 use crate::kinematics::limits::{least_excess_turn, nearest_turn, nearest_turn_within};
+use crate::kinematics::{InverseError, JointKind};
 use crate::math::float::cos;
 
 /// One branch of the inverse.
@@ -20,35 +21,16 @@ pub struct Solution {
     pub at_wrist_pole: bool,
 }
 
-/// Up to eight branches, each once.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Solutions {
-    items: [Solution; 8],
-    count: usize,
-}
+/// Up to eight branches, each once: front before rear, upper before lower.
+pub type Solutions = Branches<Solution, 8>;
 
-impl Solutions {
-    #[inline]
-    fn none() -> Self {
-        let nothing = Solution { q: [0.0; 6], posture: Posture::new(true, true, true), at_wrist_pole: false };
-        Self { items: [nothing; 8], count: 0 }
-    }
+const NOTHING: Solution = Solution {
+    q: [0.0; 6],
+    posture: Posture { shoulder: Shoulder::Front, elbow: Elbow::Upper, wrist: Wrist::Flip },
+    at_wrist_pole: false,
+};
 
-    #[inline]
-    fn push(&mut self, solution: Solution) {
-        // Two sides, two elbows and two wrists: a ninth is never pushed.
-        if let Some(place) = self.items.get_mut(self.count) {
-            *place = solution;
-            self.count += 1;
-        }
-    }
-
-    /// The branches: front before rear, upper before lower.
-    #[must_use]
-    pub fn as_slice(&self) -> &[Solution] {
-        self.items.get(..self.count).unwrap_or(&[])
-    }
-}
+const KINDS: [JointKind; 6] = [JointKind::Revolute; 6];
 
 impl SphericalWristArm {
     /// All branches that reach the pose, limits left aside; every joint in (−π, π], free joints from `reference`.
@@ -59,16 +41,16 @@ impl SphericalWristArm {
     /// [`InverseError::OutOfReach`], [`InverseError::InsideLateralOffset`], [`InverseError::NotFinite`].
     pub fn inverse(&self, base_from_flange: &Pose, reference: &[f64; 6]) -> Result<Solutions, InverseError> {
         let target = self.target(base_from_flange, reference)?;
-        let mut found = Solutions::none();
+        let mut found = Solutions::none(NOTHING);
         let front = self.side(&target, Shoulder::Front)?;
         let first_error = self.push_elbows(&mut found, &target, &front).err();
-        if !front.singular {
+        if !front.plane.singular {
             let rear = self.side(&target, Shoulder::Rear)?;
             // The rear's reach is the harder one: where both fail, the front's evidence is the nearer.
             let _ = self.push_elbows(&mut found, &target, &rear);
         }
         match first_error {
-            Some(error) if found.count == 0 => Err(error),
+            Some(error) if found.as_slice().is_empty() => Err(error),
             _ => Ok(found),
         }
     }
@@ -109,28 +91,20 @@ impl SphericalWristArm {
         reference: &[f64; 6],
     ) -> Result<Solutions, InverseError> {
         let all = self.inverse(base_from_flange, &self.clamped(reference))?;
-        let mut kept = Solutions::none();
+        let mut kept = Solutions::none(NOTHING);
         for solution in all.as_slice() {
             if let Some(q) = self.turned_within(solution, reference) {
                 kept.push(Solution { q, ..*solution });
             }
         }
-        if kept.count > 0 { Ok(kept) } else { Err(self.limit_evidence(&all, reference)) }
+        if kept.as_slice().is_empty() { Err(self.limit_evidence(&all, reference)) } else { Ok(kept) }
     }
 
     /// The joint positions within the limits nearest to `seed`.
     pub(super) fn nearest(&self, base_from_flange: &Pose, seed: &[f64; 6]) -> Result<[f64; 6], InverseError> {
         let all = self.inverse(base_from_flange, &self.clamped(seed))?;
-        let mut best = None;
-        for solution in all.as_slice() {
-            if let Some(q) = self.turned_within(solution, seed) {
-                let distance = distance_squared(&q, seed);
-                if best.is_none_or(|(_, least)| distance < least) {
-                    best = Some((q, distance));
-                }
-            }
-        }
-        best.map(|(q, _)| q).ok_or_else(|| self.limit_evidence(&all, seed))
+        let within = all.as_slice().iter().filter_map(|solution| self.turned_within(solution, seed));
+        nearest(within, seed).ok_or_else(|| self.limit_evidence(&all, seed))
     }
 
     /// The joint positions in a given configuration; joints 2, 3 and 5 in the turn nearest to `reference`.
@@ -171,15 +145,11 @@ impl SphericalWristArm {
     /// Each joint in the turn within the limits that is nearest to the reference.
     #[inline]
     fn turned_within(&self, solution: &Solution, reference: &[f64; 6]) -> Option<[f64; 6]> {
-        let limits = self.limits.position();
         let mut q = solution.q;
         if solution.at_wrist_pole {
             self.share_at_pole(&mut q);
         }
-        for ((angle, &reference), &range) in q.iter_mut().zip(reference).zip(limits) {
-            *angle = nearest_turn_within(*angle, reference, range)?;
-        }
-        Some(q)
+        self.limits.turned_within(&q, reference, &KINDS)
     }
 
     /// At the wrist's pole, lets joint 4 take over what joint 6 cannot turn.
@@ -214,31 +184,11 @@ impl SphericalWristArm {
     /// Which joint keeps the branch nearest to the reference outside the limits.
     #[cold]
     fn limit_evidence(&self, all: &Solutions, reference: &[f64; 6]) -> InverseError {
-        let mut nearest = ([0.0; 6], f64::INFINITY);
-        for solution in all.as_slice() {
-            let q: [f64; 6] = core::array::from_fn(|i| nearest_turn(solution.q[i], reference[i]));
-            let distance = distance_squared(&q, reference);
-            if distance < nearest.1 {
-                nearest = (q, distance);
-            }
-        }
-        let limits = self.limits.position();
-        let mut worst = (0, 0.0, -1.0);
-        for (axis, (&angle, &range)) in nearest.0.iter().zip(limits).enumerate() {
-            let (value, excess) = least_excess_turn(angle, range);
-            if excess > worst.2 {
-                worst = (axis, value, excess);
-            }
-        }
-        let (axis, value, _) = worst;
-        InverseError::PositionLimit { axis, value, min: limits[axis].0, max: limits[axis].1 }
+        let turned = |s: &Solution| core::array::from_fn(|i| nearest_turn(s.q[i], reference[i]));
+        // There is at least one branch: none at all is another error.
+        let q = nearest(all.as_slice().iter().map(turned), reference).unwrap_or(*reference);
+        self.limits.worst_violation(&q, &KINDS)
     }
-}
-
-/// Σ (aᵢ − bᵢ)².
-#[inline]
-fn distance_squared(a: &[f64; 6], b: &[f64; 6]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
 /// Whichever there is, or the one nearer to the reference.
