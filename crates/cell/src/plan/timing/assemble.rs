@@ -2,7 +2,7 @@
 
 use super::check::{Check, Load};
 use super::coordinate::End;
-use super::motion::{Timing, TimingKind, TimingPiece};
+use super::motion::{Timing, TimingKind, TimingPiece, duration, stretched};
 use super::s_curve::SCurve;
 use super::slowdown::slowdowns;
 use super::window::{Passage, Window, Workshop};
@@ -47,7 +47,7 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
                 passage = whole;
             }
         }
-        let (mut pieces, mut kind) = (stretched(&passage.pieces, passage.stretch), TimingKind::Optimized);
+        let (mut pieces, mut kind) = (all_stretched(&passage.pieces, passage.stretch), TimingKind::Optimized);
         if passage.stretch > STRETCH {
             let slow = self.stretched_plain(plain, &load)?;
             if duration(&slow) < passage.duration() {
@@ -160,7 +160,7 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
     ) -> Result<Vec<TimingPiece>, TimingError<P::Error>> {
         let mut factor = load.stretch();
         for _ in 0..STRETCHINGS {
-            pieces = stretched(&pieces, factor * (1.0 + ROUNDING));
+            pieces = all_stretched(&pieces, factor * (1.0 + ROUNDING));
             factor = Check::new(self.path, self.joints, self.limits).pieces(&pieces)?.stretch();
             if factor <= 1.0 {
                 return Ok(pieces);
@@ -174,12 +174,8 @@ fn whole(length: f64) -> Window {
     Window { from: 0.0, to: length, ends: [End::Rest; 2] }
 }
 
-fn stretched(pieces: &[TimingPiece], factor: f64) -> Vec<TimingPiece> {
-    pieces.iter().map(|piece| piece.stretched(factor)).collect()
-}
-
-fn duration(pieces: &[TimingPiece]) -> f64 {
-    pieces.iter().map(|piece| piece.duration).sum()
+fn all_stretched(pieces: &[TimingPiece], factor: f64) -> Vec<TimingPiece> {
+    pieces.iter().map(|piece| stretched(piece, factor)).collect()
 }
 
 #[cfg(test)]

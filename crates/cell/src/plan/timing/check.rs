@@ -326,6 +326,7 @@ fn highest<const N: usize>(start: &Sample<N>, middle: &Sample<N>, end: &Sample<N
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::timing::motion::stretched;
     use crate::plan::timing::s_curve::SCurve;
 
     /// A joint that turns by nearly π about the middle of a path of length 1: q = atan((s − ½)/δ).
@@ -364,7 +365,7 @@ mod tests {
             let load = Check::new(&mut Needle(width), &JOINT, &PATH).pieces(&pieces).unwrap();
             assert!(load.stretch() > CLEAR, "{width}");
         }
-        let slow: Vec<TimingPiece> = pieces.iter().map(|piece| piece.stretched(10.0)).collect();
+        let slow: Vec<TimingPiece> = pieces.iter().map(|piece| stretched(piece, 10.0)).collect();
         let load = Check::new(&mut Needle(0.01), &JOINT, &PATH).pieces(&slow).unwrap();
         let v = PATH.speed / 10.0;
         // Highest q′, q″ and q‴ of the arctangent.

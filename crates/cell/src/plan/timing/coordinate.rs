@@ -4,7 +4,7 @@
 //! ordinary point: there s = s_w = s_ww = 0 and s_www is not. s(w) is a uniform quintic B-spline, hence C⁴, and it is
 //! monotone where its control points are.
 
-use super::motion::{PathState, TimingPiece};
+use super::motion::{PathState, TimingPiece, duration};
 
 /// What the motion does at an end of a window.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,8 +61,7 @@ impl Coordinate {
 
     /// From a motion in time: nearly the motion itself, unless that would turn back between two knots.
     pub(super) fn following(pieces: &[TimingPiece], knots: usize, ends: [End; 2], speed: f64) -> Self {
-        let duration: f64 = pieces.iter().map(|piece| piece.duration).sum();
-        let step = duration / (knots - 1) as f64;
+        let step = duration(pieces) / (knots - 1) as f64;
         let mut states = Vec::with_capacity(knots);
         let (mut index, mut begun) = (0, 0.0);
         for knot in 0..knots {

@@ -1,7 +1,7 @@
 //! The plain motion: rest to rest under path limits alone, seven phases of constant jerk.
 
 use super::PathLimits;
-use super::motion::{PathState, TimingPiece};
+use super::motion::{PathState, TimingPiece, constant_jerk};
 
 /// The time-optimal motion over `length` from rest to rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,7 +78,7 @@ impl SCurve {
         let phases = [(jerk, self.jerk_time), (0.0, self.acceleration_time), (-jerk, self.jerk_time)];
         let mut state = *start;
         phases.into_iter().filter(|&(_, duration)| duration > 0.0).map(move |(jerk, duration)| {
-            let piece = TimingPiece::constant_jerk(&state, jerk, duration);
+            let piece = constant_jerk(&state, jerk, duration);
             state = piece.end();
             piece
         })

@@ -3,7 +3,7 @@
 use super::check::{Check, Load};
 use super::coordinate::{Coordinate, End};
 use super::interior_point::InteriorPoint;
-use super::motion::{PathState, TimingPiece};
+use super::motion::{PathState, TimingPiece, duration, joining};
 use super::program::{Demand, Program};
 use super::{JointPath, PathLimits, TimingError, TimingLimits, crude};
 
@@ -44,7 +44,7 @@ impl Passage {
 
     /// Duration with the stretching.
     pub(super) fn duration(&self) -> f64 {
-        if self.pieces.is_empty() { f64::INFINITY } else { time(&self.pieces) * self.stretch }
+        if self.pieces.is_empty() { f64::INFINITY } else { duration(&self.pieces) * self.stretch }
     }
 }
 
@@ -76,7 +76,7 @@ impl Workshop {
         let Some(pieces) = self.pieces(solved, &coarse, window, limits.speed) else {
             return Ok(Passage::NONE);
         };
-        let knots = crude::knots(time(&pieces), STEP);
+        let knots = crude::knots(duration(&pieces), STEP);
         let coordinate = Coordinate::following(&pieces, knots, window.ends, limits.speed);
         self.set_sites(path, window, &coordinate)?;
         let mut best = Passage::NONE;
@@ -195,7 +195,7 @@ impl Workshop {
         (0..last)
             .map(|knot| {
                 let end = state(knot + 1);
-                let piece = TimingPiece::joining(&start, &end, step * duration(&controls[knot..knot + 4]));
+                let piece = joining(&start, &end, step * time_between(&controls[knot..knot + 4]));
                 start = end;
                 let sound = piece.duration > 0.0 && piece.duration.is_finite() && start.velocity >= 0.0;
                 sound.then_some(piece)
@@ -228,12 +228,8 @@ fn scaled(limits: [f64; 3], shares: [f64; 3]) -> [f64; 3] {
     core::array::from_fn(|order| limits[order] * shares[order])
 }
 
-fn time(pieces: &[TimingPiece]) -> f64 {
-    pieces.iter().map(|piece| piece.duration).sum()
-}
-
 /// ∫ β^(−1/2) over one interval between knots, in knots: Gauss's rule with four nodes, of which β sees a cubic.
-fn duration(controls: &[f64]) -> f64 {
+fn time_between(controls: &[f64]) -> f64 {
     const NODES: [(f64, f64); 4] = [
         (0.069_431_844_202_973_7, 0.173_927_422_568_726_93),
         (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
