@@ -16,8 +16,8 @@ const ROUNDING: f64 = 1e-9;
 const REACH: f64 = 1.5;
 /// Windows that need more stretching than this were too narrow.
 const STRETCH: f64 = 1.003;
-/// Bound on the rounds of stretching. Where a limit is passed far, the judge says so without saying how far, and each
-/// round stretches by half as much again.
+/// Bound on the rounds of stretching. Where a limit is passed far, the judge says so without saying how far,
+/// and each round stretches by half as much again.
 const STRETCHINGS: usize = 100;
 
 /// A path with its limits.
@@ -152,7 +152,8 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
         Ok(Passage { pieces, stretch })
     }
 
-    /// The plain motion in as much time as it takes: with all derivatives of the path finite, there is always one.
+    /// The plain motion in as much time as it takes: with all derivatives of the path finite, there is always
+    /// one.
     fn stretched_plain(
         &mut self,
         mut pieces: Vec<TimingPiece>,

@@ -1,8 +1,8 @@
 //! The coordinate in which the optimizer works: a smooth, monotone s(w).
 //!
 //! w is close to the time that the motion will take, so that even knots in w are even in time, and rest is an
-//! ordinary point: there s = s_w = s_ww = 0 and s_www is not. s(w) is a uniform quintic B-spline, hence C⁴, and it is
-//! monotone where its control points are.
+//! ordinary point: there s = s_w = s_ww = 0 and s_www is not. s(w) is a uniform quintic B-spline, hence C⁴,
+//! and it is monotone where its control points are.
 
 use super::motion::{PathState, TimingPiece, duration};
 
@@ -46,8 +46,8 @@ impl Coordinate {
         self.controls.len() - 2 * PAD
     }
 
-    /// Through samples `s` of the motion at even times `step`, one a knot, which it follows as a spline of controls does:
-    /// smoothly, not exactly. The ends are met exactly.
+    /// Through samples `s` of the motion at even times `step`, one a knot, which it follows as a spline of
+    /// controls does: smoothly, not exactly. The ends are met exactly.
     pub(super) fn new(samples: &[f64], step: f64, ends: [End; 2], speed: f64) -> Self {
         let mut controls = vec![0.0; samples.len() + 2 * PAD];
         controls[PAD..PAD + samples.len()].copy_from_slice(samples);
@@ -119,8 +119,8 @@ fn quasi_interpolant(state: &PathState, step: f64) -> f64 {
 fn close(controls: &mut [f64], place: f64, pace: f64, end: End) {
     match end {
         End::Rest => {
-            // Odd about the end, so that s = place and s_ww = 0; s_w = 0 asks for the first neighbour. A cubic
-            // t³ has these very controls, k³ − 3k/2.
+            // Odd about the end, so that s = place and s_ww = 0; s_w = 0 asks for the first neighbour. A
+            // cubic t³ has these very controls, k³ − 3k/2.
             let second = controls[PAD + 2] - place;
             controls[PAD] = place;
             controls[PAD + 1] = place - second / 10.0;

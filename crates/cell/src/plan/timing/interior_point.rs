@@ -1,16 +1,17 @@
-//! A primal-dual interior-point method for [`Program`]: Mehrotra's predictor and corrector, linearised anew at every
-//! iteration, infeasible starts allowed.
+//! A primal-dual interior-point method for [`Program`]: Mehrotra's predictor and corrector, linearised anew
+//! at every iteration, infeasible starts allowed.
 //!
-//! Unknowns are the controls c of β, one a knot and one more at either end; for each row g(c) ≤ 0 a slack s > 0 with
-//! g + s = 0, and a dual λ > 0. Each iteration costs one factorization of a banded matrix and three sweeps over the
-//! rows.
+//! Unknowns are the controls c of β, one a knot and one more at either end; for each row g(c) ≤ 0 a slack s >
+//! 0 with g + s = 0, and a dual λ > 0. Each iteration costs one factorization of a banded matrix and three
+//! sweeps over the rows.
 
 use super::banded::Banded;
 use super::program::{Point, Program, Rows};
 
 /// Bound on iterations.
 const ITERATIONS: usize = 50;
-/// The dual residual may be so many times the duality gap, which is what the accuracy speaks of; the rows' residual.
+/// The dual residual may be so many times the duality gap, which is what the accuracy speaks of; the rows'
+/// residual.
 const DUAL_RESIDUAL: f64 = 4.0;
 const RESIDUAL: f64 = 1e-5;
 /// Start: share of the highest constant β, the least slack, and the product of slack and dual.
@@ -60,8 +61,8 @@ struct Progress {
 
 impl InteriorPoint {
     /// Solves a new problem to within `accuracy`, a share of the duration; the controls of β are in
-    /// [`InteriorPoint::controls`] afterwards. False where numbers ran out of range. Running out of iterations is no
-    /// failure: what was reached is judged by others.
+    /// [`InteriorPoint::controls`] afterwards. False where numbers ran out of range. Running out of
+    /// iterations is no failure: what was reached is judged by others.
     pub(super) fn solve(&mut self, program: &Program, accuracy: f64) -> bool {
         self.start(program);
         self.iterate(program, accuracy)
@@ -301,7 +302,8 @@ fn frozen(program: &Program, index: usize, size: usize) -> bool {
     (program.held[0] && index < 3) || (program.held[1] && index + 3 >= size)
 }
 
-/// Gradient and diagonal curvature of the duration (in knots) at one site, in terms of β, h β′, h² β″: Simpson's rule.
+/// Gradient and diagonal curvature of the duration (in knots) at one site, in terms of β, h β′, h² β″:
+/// Simpson's rule.
 fn objective(program: &Program, site: usize, point: &Point, duration: &mut f64) -> ([f64; 3], [f64; 3]) {
     let last = program.sites() - 1;
     let weight = if site == 0 || site == last {

@@ -13,10 +13,11 @@ pub struct PathState {
     pub jerk: f64,
 }
 
-/// A stretch of motion along the path: a polynomial of degree five in time, given by its derivatives at the start.
+/// A stretch of motion along the path: a polynomial of degree five in time, given by its derivatives at the
+/// start.
 ///
-/// A plain S-curve has pieces of constant jerk (`snap` and `crackle` are zero). In a [`Timing`], position, velocity
-/// and acceleration are continuous from piece to piece; the jerk may step.
+/// A plain S-curve has pieces of constant jerk (`snap` and `crackle` are zero). In a [`Timing`], position,
+/// velocity and acceleration are continuous from piece to piece; the jerk may step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TimingPiece {
     /// Duration in seconds.
@@ -139,8 +140,8 @@ pub struct Slowdown {
     pub place: f64,
     /// The least speed.
     pub speed: f64,
-    /// The highest constant speed that the joints could hold all along this stretch; the programmed speed where only
-    /// the change of speed takes longer than programmed.
+    /// The highest constant speed that the joints could hold all along this stretch; the programmed speed
+    /// where only the change of speed takes longer than programmed.
     pub sustainable: f64,
     /// The joint that causes it, counted from 0.
     pub joint: usize,
@@ -191,14 +192,16 @@ impl Timing {
         self.kind
     }
 
-    /// Where the motion is more than 1 % slower than the path limits alone would have it, in order of the path.
+    /// Where the motion is more than 1 % slower than the path limits alone would have it, in order of the
+    /// path.
     #[must_use]
     pub fn slowdowns(&self) -> &[Slowdown] {
         &self.slowdowns
     }
 
-    /// The state at `time` seconds after the start; before the start it is the start, after the end the end. Finding
-    /// the piece takes logarithmic time; who walks through in order may use [`Timing::pieces`] instead.
+    /// The state at `time` seconds after the start; before the start it is the start, after the end the end.
+    /// Finding the piece takes logarithmic time; who walks through in order may use [`Timing::pieces`]
+    /// instead.
     #[must_use]
     pub fn at(&self, time: f64) -> PathState {
         let index = self.starts.partition_point(|&start| start <= time).saturating_sub(1);

@@ -40,7 +40,8 @@ impl SCurve {
         Self { length, speed: peak, jerk, jerk_time, acceleration_time, cruise_time }
     }
 
-    /// Length of the way that either ramp takes; constant speed is held from here to the same distance from the end.
+    /// Length of the way that either ramp takes; constant speed is held from here to the same distance from
+    /// the end.
     pub(super) fn ramp(&self) -> f64 {
         (self.length - self.speed * self.cruise_time) / 2.0
     }
@@ -91,8 +92,8 @@ mod tests {
 
     const LIMITS: PathLimits = PathLimits { speed: 0.25, acceleration: 10.0, jerk: 500.0 };
 
-    /// Lengths over seven decades and three speeds: the motion ends at rest at the end, keeps its limits, and one
-    /// of them is always at work.
+    /// Lengths over seven decades and three speeds: the motion ends at rest at the end, keeps its limits, and
+    /// one of them is always at work.
     #[test]
     fn every_length_ends_at_rest_within_its_limits() {
         for speed in [0.005, 0.25, 3.0] {

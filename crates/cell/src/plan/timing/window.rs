@@ -60,8 +60,8 @@ pub(super) struct Workshop {
 }
 
 impl Workshop {
-    /// The fastest motion through the window that was found: on the coordinate of the first guess roughly, then on the
-    /// coordinate of that motion, with limits lowered until the judge is content.
+    /// The fastest motion through the window that was found: on the coordinate of the first guess roughly,
+    /// then on the coordinate of that motion, with limits lowered until the judge is content.
     pub(super) fn pass<const N: usize, P: JointPath<N>>(
         &mut self,
         path: &mut P,
@@ -158,7 +158,8 @@ impl Workshop {
         }
     }
 
-    /// The motion in time that the solution stands for: one piece between two knots. None where it makes no sense.
+    /// The motion in time that the solution stands for: one piece between two knots. None where it makes no
+    /// sense.
     fn pieces(
         &self,
         solved: bool,
@@ -228,7 +229,8 @@ fn scaled(limits: [f64; 3], shares: [f64; 3]) -> [f64; 3] {
     core::array::from_fn(|order| limits[order] * shares[order])
 }
 
-/// ∫ β^(−1/2) over one interval between knots, in knots: Gauss's rule with four nodes, of which β sees a cubic.
+/// ∫ β^(−1/2) over one interval between knots, in knots: Gauss's rule with four nodes, of which β sees a
+/// cubic.
 fn time_between(controls: &[f64]) -> f64 {
     const NODES: [(f64, f64); 4] = [
         (0.069_431_844_202_973_7, 0.173_927_422_568_726_93),
