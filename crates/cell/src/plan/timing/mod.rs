@@ -24,9 +24,9 @@
 //! 5. If all that fails, the S-curve is stretched as a whole until it fits. [`Timing::kind`] tells.
 //!
 //! # What is sure
-//! Every timing that is returned has been judged with exact derivatives of the path at samples 1.25 ms apart
-//! or closer, and between them as `check` describes: by prediction from sample to sample, not by interval
-//! arithmetic. The last bit of optimality is not proved; measured against TOPP-RA, which knows no jerk limit,
+//! Every timing that is returned has been judged with exact derivatives of the path at samples, 1.25 ms apart
+//! or closer where it was optimized, and between them as `check` describes: by prediction from sample to
+//! sample, not by interval arithmetic. The last bit of optimality is not proved; measured against TOPP-RA, which knows no jerk limit,
 //! motions take 0.4 % more time in the median. Resolution ends where rounding does: a wrist that passes its
 //! singularity at less than about 10⁻⁹ rad is no longer told from one that flips; the result is then an error
 //! or a stretched S-curve of absurd length.
