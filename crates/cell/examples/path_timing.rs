@@ -1,6 +1,8 @@
-//! Times random tool paths of the default arm and prints, for each, how long the planning took against the motion.
+//! Times random tool paths of the default arm and prints, for each, how long the planning took against the
+//! motion.
 //!
-//! `path_timing [COUNT [FOLDER]]`: with a folder, each move is also written there for `tests/path_timing_reference.py`.
+//! `path_timing [COUNT [FOLDER]]`: with a folder, each move is also written there for
+//! `tests/path_timing_reference.py`.
 
 #![allow(clippy::print_stdout, reason = "printing is what it is for")]
 
@@ -11,7 +13,7 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use common::{Kind, Move, Random, joint_limits, random_move};
+use common::{Kind, Move, REFERENCE_SEED, Random, joint_limits, random_move};
 use seamline_cell::plan::timing::{JointPath, Timing, TimingKind, time_path};
 
 const REPEATS: usize = 3;
@@ -20,7 +22,7 @@ fn main() -> std::io::Result<()> {
     let mut arguments = std::env::args().skip(1);
     let count = arguments.next().and_then(|n| n.parse().ok()).unwrap_or(250);
     let folder = arguments.next();
-    let mut random = Random(1);
+    let mut random = Random(REFERENCE_SEED);
     let mut speeds = Vec::new();
     for index in 0..count {
         let mut job = random_move(&mut random, Kind::of(index));
@@ -67,8 +69,8 @@ fn planned(job: &mut Move) -> (Option<Timing>, f64) {
     (found, least)
 }
 
-/// Little-endian numbers: our duration, 1 if it was optimized, path length, speed and acceleration limit, then place, q′
-/// and q″ on a grid.
+/// Little-endian numbers: our duration, 1 if it was optimized, path length, speed and acceleration limit,
+/// then place, q′ and q″ on a grid.
 fn dump(job: &mut Move, timing: &Timing, file: &Path) -> std::io::Result<()> {
     let length = job.path.length();
     let steps = (timing.duration() / 0.5e-3).ceil().clamp(200.0, 8000.0) as usize;

@@ -3,7 +3,9 @@
 By hand, with numpy and toppra from PyPI (0.6 was used):
 
     cargo run --release -p seamline-cell --example path_timing -- 250 FOLDER
-    python crates/cell/tests/path_timing_reference.py FOLDER
+    python crates/cell/tests/path_timing_reference.py FOLDER [crates/cell/tests/data/path_timing_toppra.csv]
+
+The second argument is where the reference times are written, for the test that watches over them.
 """
 
 import logging
@@ -86,6 +88,12 @@ def main():
     print(f"TOPP-RA failed on {failed} moves")
     report("all moves", ratios)
     report("moves that a joint slows", [ratio for ratio in ratios if ratio[4]])
+    if len(sys.argv) > 2:
+        with open(sys.argv[2], "w", encoding="utf-8") as table:
+            table.write("# Times of TOPP-RA (toppra 0.6, PyPI; velocity and acceleration limits, no jerk limit) on the moves\n"
+                        "# of the example path_timing; made by crates/cell/tests/path_timing_reference.py.\n"
+                        "move,seconds\n")
+            table.writelines(f"{int(ratio[1])},{ratio[3]:.5f}\n" for ratio in ratios)
     ratios.sort()
     for ratio in ratios[-5:]:
         print("  %.4f  move %s: %.4f s against %.4f s" % ratio[:4])

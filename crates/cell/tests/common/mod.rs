@@ -129,6 +129,9 @@ impl Kind {
     }
 }
 
+/// The seed of the moves that `data/path_timing_toppra.csv` speaks of.
+pub(crate) const REFERENCE_SEED: u64 = 1;
+
 /// A random move.
 pub(crate) struct Move {
     pub(crate) kind: Kind,
@@ -136,7 +139,8 @@ pub(crate) struct Move {
     pub(crate) limits: PathLimits,
 }
 
-/// Limits of the default cell: full speed in 0.2 s (0.125 s for the wrist), jerk 50 times the acceleration a second.
+/// Limits of the default cell: full speed in 0.2 s (0.125 s for the wrist), jerk 50 times the acceleration a
+/// second.
 pub(crate) fn joint_limits() -> TimingLimits<6> {
     let radians = |values: [f64; 6]| values.map(f64::to_radians);
     let acceleration = radians([1050.0, 1050.0, 1100.0, 3480.0, 3480.0, 5600.0]);

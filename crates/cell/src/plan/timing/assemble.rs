@@ -2,7 +2,7 @@
 
 use super::check::{Check, Load};
 use super::coordinate::End;
-use super::motion::{Timing, TimingKind, TimingPiece};
+use super::motion::{Timing, TimingKind, TimingPiece, duration, stretched};
 use super::s_curve::SCurve;
 use super::slowdown::slowdowns;
 use super::window::{Passage, Window, Workshop};
@@ -16,8 +16,8 @@ const ROUNDING: f64 = 1e-9;
 const REACH: f64 = 1.5;
 /// Windows that need more stretching than this were too narrow.
 const STRETCH: f64 = 1.003;
-/// Bound on the rounds of stretching. Where a limit is passed far, the judge says so without saying how far, and each
-/// round stretches by half as much again.
+/// Bound on the rounds of stretching. Where a limit is passed far, the judge says so without saying how far,
+/// and each round stretches by half as much again.
 const STRETCHINGS: usize = 100;
 
 /// A path with its limits.
@@ -47,7 +47,7 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
                 passage = whole;
             }
         }
-        let (mut pieces, mut kind) = (stretched(&passage.pieces, passage.stretch), TimingKind::Optimized);
+        let (mut pieces, mut kind) = (all_stretched(&passage.pieces, passage.stretch), TimingKind::Optimized);
         if passage.stretch > STRETCH {
             let slow = self.stretched_plain(plain, &load)?;
             if duration(&slow) < passage.duration() {
@@ -152,7 +152,8 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
         Ok(Passage { pieces, stretch })
     }
 
-    /// The plain motion in as much time as it takes: with all derivatives of the path finite, there is always one.
+    /// The plain motion in as much time as it takes: with all derivatives of the path finite, there is always
+    /// one.
     fn stretched_plain(
         &mut self,
         mut pieces: Vec<TimingPiece>,
@@ -160,13 +161,13 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
     ) -> Result<Vec<TimingPiece>, TimingError<P::Error>> {
         let mut factor = load.stretch();
         for _ in 0..STRETCHINGS {
-            if factor <= 1.0 {
-                break;
-            }
-            pieces = stretched(&pieces, factor * (1.0 + ROUNDING));
+            pieces = all_stretched(&pieces, factor * (1.0 + ROUNDING));
             factor = Check::new(self.path, self.joints, self.limits).pieces(&pieces)?.stretch();
+            if factor <= 1.0 {
+                return Ok(pieces);
+            }
         }
-        Ok(pieces)
+        Err(TimingError::NoSpeed)
     }
 }
 
@@ -174,12 +175,8 @@ fn whole(length: f64) -> Window {
     Window { from: 0.0, to: length, ends: [End::Rest; 2] }
 }
 
-fn stretched(pieces: &[TimingPiece], factor: f64) -> Vec<TimingPiece> {
-    pieces.iter().map(|piece| piece.stretched(factor)).collect()
-}
-
-fn duration(pieces: &[TimingPiece]) -> f64 {
-    pieces.iter().map(|piece| piece.duration).sum()
+fn all_stretched(pieces: &[TimingPiece], factor: f64) -> Vec<TimingPiece> {
+    pieces.iter().map(|piece| stretched(piece, factor)).collect()
 }
 
 #[cfg(test)]

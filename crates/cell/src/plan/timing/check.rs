@@ -1,10 +1,11 @@
 //! The judge: how much of each limit a motion along a path takes, between the samples too.
 //!
 //! A piece is sampled with exact derivatives in time and bisected until
-//! - the samples of an interval predict each other (Hermite's formulae for position and velocity, Simpson's for the acceleration), so that
-//!   nothing hides in between: a needle-sharp turn of a wrist shows as a displacement that nothing at the ends foretells;
-//! - the middle lies near the chord wherever the limit is near, so that the parabola through the three samples tells
-//!   what happens between them.
+//! - the samples of an interval predict each other (Hermite's formulae for position and velocity, Simpson's
+//!   for the acceleration), so that nothing hides in between: a needle-sharp turn of a wrist shows as a
+//!   displacement that nothing at the ends foretells;
+//! - the middle lies near the chord wherever the limit is near, so that the parabola through the three
+//!   samples tells what happens between them.
 
 use super::motion::{PathState, TimingPiece};
 use super::{JointJet, JointPath, PathLimits, TimingError, TimingLimits};
@@ -16,13 +17,13 @@ const FIRST_INTERVALS: f64 = 64.0;
 const DEPTH: usize = 40;
 /// Bound on bisections that only sharpen a peak.
 const SHARPENING_DEPTH: usize = 8;
-/// From this share of a limit on, samples are made to tell it sharply: by the second difference that they may have, and
-/// by the mean jerk between two of them that they may leave unexplained, as shares.
+/// From this share of a limit on, samples are made to tell it sharply: by the second difference that they may
+/// have, and by the mean jerk between two of them that they may leave unexplained, as shares.
 const NEAR: f64 = 0.95;
 const BEND: f64 = 0.005;
 const UNEXPLAINED: f64 = 0.001;
-/// What may stay unseen in an interval of at most `SHARP` seconds: a turn, as a share of what the jerk limit could make
-/// of it, and a mean jerk, as a share of the limit.
+/// What may stay unseen in an interval of at most `SHARP` seconds: a turn, as a share of what the jerk limit
+/// could make of it, and a mean jerk, as a share of the limit.
 const UNSEEN_TURN: f64 = 0.02;
 const UNSEEN_JERK: f64 = 0.002;
 const SHARP: f64 = 5e-3;
@@ -31,13 +32,14 @@ const SHARP: f64 = 5e-3;
 const PLACE_NOISE: f64 = 1e-14;
 const POSITION_NOISE: f64 = 1e-9;
 const RATE_NOISE: f64 = 1e-6;
-/// Bound on the splits in one piece. A needle takes about a hundred; only a path that is not smooth at any scale takes
-/// more than this.
+/// Bound on the splits of one first interval. A needle takes about a hundred; only a path that is not smooth at any
+/// scale takes more than this.
 const SPLITS: usize = 4000;
-/// Where a limit is passed so far that time would have to be stretched by this, it does not matter how far exactly.
+/// Where a limit is passed so far that time would have to be stretched by this, it does not matter how far
+/// exactly.
 const CLEAR: f64 = 1.5;
-/// A jump between places that rounding can hardly tell apart: in position, by so many times the rounding; in velocity
-/// and acceleration, as a share of the limit or the load.
+/// A jump between places that rounding can hardly tell apart: in position, by so many times the rounding; in
+/// velocity and acceleration, as a share of the limit or the load.
 const JUMP_NOISE: f64 = 1e3;
 const JUMPS: [f64; 2] = [1e-6, 1e-2];
 
@@ -230,14 +232,16 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
         Ok(load)
     }
 
-    /// Whether the samples tell what happens between them to a small part of the limit, wherever that is near.
+    /// Whether the samples tell what happens between them to a small part of the limit, wherever that is
+    /// near.
     fn sharp(&self, start: &Sample<N>, middle: &Sample<N>, end: &Sample<N>, load: &Load<N>) -> bool {
         let half = (end.time - start.time) / 2.0;
         let bend = |order: usize, i: usize| {
             let at = |sample: &Sample<N>| sample.shares[order][i];
             (at(start) - 2.0 * at(middle) + at(end)).abs()
         };
-        // Mean jerk of half an interval, as its limit's share: by the change of acceleration, and by the samples.
+        // Mean jerk of half an interval, as its limit's share: by the change of acceleration, and by the
+        // samples.
         let unexplained = |a: &Sample<N>, b: &Sample<N>, i: usize| {
             let change = self.joints.acceleration[i] * (b.shares[1][i] - a.shares[1][i]);
             let mean = self.joints.jerk[i] * half * (a.shares[2][i] + b.shares[2][i]) / 2.0;
@@ -326,6 +330,7 @@ fn highest<const N: usize>(start: &Sample<N>, middle: &Sample<N>, end: &Sample<N
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::timing::motion::stretched;
     use crate::plan::timing::s_curve::SCurve;
 
     /// A joint that turns by nearly π about the middle of a path of length 1: q = atan((s − ½)/δ).
@@ -354,8 +359,8 @@ mod tests {
     const JOINT: TimingLimits<1> = TimingLimits { velocity: [1.0], acceleration: [10.0], jerk: [500.0] };
     const PATH: PathLimits = PathLimits { speed: 0.1, acceleration: 2.0, jerk: 100.0 };
 
-    /// Needles from 1 cm down to 1 nm, much narrower than the first samples' distance, are all seen; the widest is
-    /// measured to a part in a thousand.
+    /// Needles from 1 cm down to 1 nm, much narrower than the first samples' distance, are all seen; the
+    /// widest is measured to one per cent.
     #[test]
     fn no_needle_slips_through() {
         let pieces = SCurve::new(1.0, &PATH).pieces();
@@ -364,7 +369,7 @@ mod tests {
             let load = Check::new(&mut Needle(width), &JOINT, &PATH).pieces(&pieces).unwrap();
             assert!(load.stretch() > CLEAR, "{width}");
         }
-        let slow: Vec<TimingPiece> = pieces.iter().map(|piece| piece.stretched(10.0)).collect();
+        let slow: Vec<TimingPiece> = pieces.iter().map(|piece| stretched(piece, 10.0)).collect();
         let load = Check::new(&mut Needle(0.01), &JOINT, &PATH).pieces(&slow).unwrap();
         let v = PATH.speed / 10.0;
         // Highest q′, q″ and q‴ of the arctangent.

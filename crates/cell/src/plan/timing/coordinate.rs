@@ -1,10 +1,10 @@
 //! The coordinate in which the optimizer works: a smooth, monotone s(w).
 //!
 //! w is close to the time that the motion will take, so that even knots in w are even in time, and rest is an
-//! ordinary point: there s = s_w = s_ww = 0 and s_www is not. s(w) is a uniform quintic B-spline, hence C⁴, and it is
-//! monotone because its control points are.
+//! ordinary point: there s = s_w = s_ww = 0 and s_www is not. s(w) is a uniform quintic B-spline, hence C⁴,
+//! and it is monotone where its control points are.
 
-use super::motion::{PathState, TimingPiece};
+use super::motion::{PathState, TimingPiece, duration};
 
 /// What the motion does at an end of a window.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,8 +46,8 @@ impl Coordinate {
         self.controls.len() - 2 * PAD
     }
 
-    /// Through samples `s` of the motion at even times `step`, one a knot, which it follows as a spline of controls does:
-    /// smoothly, not exactly. The ends are met exactly.
+    /// Through samples `s` of the motion at even times `step`, one a knot, which it follows as a spline of
+    /// controls does: smoothly, not exactly. The ends are met exactly.
     pub(super) fn new(samples: &[f64], step: f64, ends: [End; 2], speed: f64) -> Self {
         let mut controls = vec![0.0; samples.len() + 2 * PAD];
         controls[PAD..PAD + samples.len()].copy_from_slice(samples);
@@ -59,11 +59,10 @@ impl Coordinate {
         Self { step, controls }
     }
 
-    /// From a motion in time.
+    /// From a motion in time: nearly the motion itself, unless that would turn back between two knots.
     pub(super) fn following(pieces: &[TimingPiece], knots: usize, ends: [End; 2], speed: f64) -> Self {
-        let duration: f64 = pieces.iter().map(|piece| piece.duration).sum();
-        let step = duration / (knots - 1) as f64;
-        let mut samples = Vec::with_capacity(knots);
+        let step = duration(pieces) / (knots - 1) as f64;
+        let mut states = Vec::with_capacity(knots);
         let (mut index, mut begun) = (0, 0.0);
         for knot in 0..knots {
             let time = knot as f64 * step;
@@ -71,12 +70,15 @@ impl Coordinate {
                 begun += pieces[index].duration;
                 index += 1;
             }
-            let state = pieces[index].at((time - begun).min(pieces[index].duration));
-            samples.push(quasi_interpolant(&state, step));
+            states.push(pieces[index].at((time - begun).min(pieces[index].duration)));
         }
-        let (first, last) = (pieces[0].position, pieces[pieces.len() - 1].end().position);
-        samples[0] = first;
-        samples[knots - 1] = last;
+        let mut samples: Vec<f64> = states.iter().map(|state| quasi_interpolant(state, step)).collect();
+        // At rest the first control lies before the end: see `close`.
+        if samples[1..knots - 1].windows(2).any(|pair| pair[1] <= pair[0]) {
+            samples = states.iter().map(|state| state.position).collect();
+        }
+        samples[0] = pieces[0].position;
+        samples[knots - 1] = pieces[pieces.len() - 1].end().position;
         Self::new(&samples, step, ends, speed)
     }
 
@@ -117,8 +119,8 @@ fn quasi_interpolant(state: &PathState, step: f64) -> f64 {
 fn close(controls: &mut [f64], place: f64, pace: f64, end: End) {
     match end {
         End::Rest => {
-            // Odd about the end, so that s = place and s_ww = 0; s_w = 0 asks for the first neighbour. A cubic
-            // t³ has these very controls, k³ − 3k/2.
+            // Odd about the end, so that s = place and s_ww = 0; s_w = 0 asks for the first neighbour. A
+            // cubic t³ has these very controls, k³ − 3k/2.
             let second = controls[PAD + 2] - place;
             controls[PAD] = place;
             controls[PAD + 1] = place - second / 10.0;

@@ -1,7 +1,7 @@
 //! A first guess of the motion: fast, roughly right, and never trusted.
 //!
-//! Pointwise speed bounds, a backward and a forward pass with the joints' acceleration limits, and a filter that takes
-//! the corners off. It only supplies the coordinate s(w); the optimizer finds the motion.
+//! Pointwise speed bounds, a backward and a forward pass with the joints' acceleration limits, and a filter
+//! that takes the corners off. It only supplies the coordinate s(w); the optimizer finds the motion.
 
 use super::coordinate::{Coordinate, End};
 use super::window::Window;

@@ -1,16 +1,17 @@
-//! A primal-dual interior-point method for [`Program`]: Mehrotra's predictor and corrector, linearised anew at every
-//! iteration, infeasible starts allowed.
+//! A primal-dual interior-point method for [`Program`]: Mehrotra's predictor and corrector, linearised anew
+//! at every iteration, infeasible starts allowed.
 //!
-//! Unknowns are the controls c of β, one a knot and one more at either end; for each row g(c) ≤ 0 a slack s > 0 with
-//! g + s = 0, and a dual λ > 0. Each iteration costs one factorization of a banded matrix and three sweeps over the
-//! rows.
+//! Unknowns are the controls c of β, one a knot and one more at either end; for each row g(c) ≤ 0 a slack s >
+//! 0 with g + s = 0, and a dual λ > 0. Each iteration costs one factorization of a banded matrix and three
+//! sweeps over the rows.
 
 use super::banded::Banded;
 use super::program::{Point, Program, Rows};
 
 /// Bound on iterations.
 const ITERATIONS: usize = 50;
-/// The dual residual may be so many times the duality gap, which is what the accuracy speaks of; the rows' residual.
+/// The dual residual may be so many times the duality gap, which is what the accuracy speaks of; the rows'
+/// residual.
 const DUAL_RESIDUAL: f64 = 4.0;
 const RESIDUAL: f64 = 1e-5;
 /// Start: share of the highest constant β, the least slack, and the product of slack and dual.
@@ -30,15 +31,6 @@ const SHRINK: f64 = 0.2;
 const REST_WEIGHT: f64 = 2.0;
 const REST_SITES: usize = 5;
 
-/// Why the iterations ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Outcome {
-    Converged,
-    OutOfIterations,
-    /// Numbers ran out of range.
-    Broken,
-}
-
 /// The solver and its memory, reused from problem to problem.
 #[derive(Debug, Default)]
 pub(super) struct InteriorPoint {
@@ -53,7 +45,6 @@ pub(super) struct InteriorPoint {
     right: Vec<f64>,
     centring: Vec<f64>,
     direction: Vec<f64>,
-    pub(super) iterations: usize,
 }
 
 /// Sums over all rows at the start of an iteration.
@@ -69,14 +60,16 @@ struct Progress {
 }
 
 impl InteriorPoint {
-    /// Solves a new problem; the controls of β are in [`InteriorPoint::controls`] afterwards.
-    pub(super) fn solve(&mut self, program: &Program, accuracy: f64) -> Outcome {
+    /// Solves a new problem to within `accuracy`, a share of the duration; the controls of β are in
+    /// [`InteriorPoint::controls`] afterwards. False where numbers ran out of range. Running out of
+    /// iterations is no failure: what was reached is judged by others.
+    pub(super) fn solve(&mut self, program: &Program, accuracy: f64) -> bool {
         self.start(program);
         self.iterate(program, accuracy)
     }
 
-    /// Solves the last problem again after small changes to its demands.
-    pub(super) fn solve_again(&mut self, program: &Program, accuracy: f64) -> Outcome {
+    /// Solves the last problem again after small changes to its demands; as [`InteriorPoint::solve`].
+    pub(super) fn solve_again(&mut self, program: &Program, accuracy: f64) -> bool {
         for (index, demand) in program.demands.iter().enumerate() {
             let rows = demand.rows(&self.points[index / program.axes]);
             for (row, g) in rows.into_iter().enumerate() {
@@ -93,18 +86,17 @@ impl InteriorPoint {
         &self.controls
     }
 
-    fn iterate(&mut self, program: &Program, accuracy: f64) -> Outcome {
-        for iteration in 0..ITERATIONS {
-            self.iterations = iteration;
+    fn iterate(&mut self, program: &Program, accuracy: f64) -> bool {
+        for _ in 0..ITERATIONS {
             let progress = self.assemble(program);
             let done = progress.gap <= accuracy * progress.duration
                 && progress.dual_residual <= DUAL_RESIDUAL * accuracy * progress.duration
                 && progress.residual <= RESIDUAL;
             if done {
-                return Outcome::Converged;
+                return true;
             }
             if !(progress.duration.is_finite() && progress.gap.is_finite()) {
-                return Outcome::Broken;
+                return false;
             }
             for index in 0..self.controls.len() {
                 if frozen(program, index, self.controls.len()) {
@@ -112,11 +104,11 @@ impl InteriorPoint {
                 }
             }
             if !self.matrix.factor() {
-                return Outcome::Broken;
+                return false;
             }
             self.step(program, &progress);
         }
-        Outcome::OutOfIterations
+        true
     }
 
     fn start(&mut self, program: &Program) {
@@ -310,7 +302,8 @@ fn frozen(program: &Program, index: usize, size: usize) -> bool {
     (program.held[0] && index < 3) || (program.held[1] && index + 3 >= size)
 }
 
-/// Gradient and diagonal curvature of the duration (in knots) at one site, in terms of β, h β′, h² β″: Simpson's rule.
+/// Gradient and diagonal curvature of the duration (in knots) at one site, in terms of β, h β′, h² β″:
+/// Simpson's rule.
 fn objective(program: &Program, site: usize, point: &Point, duration: &mut f64) -> ([f64; 3], [f64; 3]) {
     let last = program.sites() - 1;
     let weight = if site == 0 || site == last {

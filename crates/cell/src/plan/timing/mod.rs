@@ -1,12 +1,48 @@
-//! Path-true speed: how fast a tool may follow its path so that every joint keeps its limits at every instant.
+//! Path-true speed: how fast a tool may follow its path so that every joint keeps its limits at every
+//! instant.
 //!
-//! The tool follows a path x(s), s from 0 to L, and the joints follow q(s). Only s(t) is chosen, from rest to rest:
-//! near time-optimal under |q̇| ≤ V, |q̈| ≤ A, |q⃛| ≤ J of every joint and ṡ, s̈, s⃛ within the path's own limits. The tool
-//! never leaves the path; where a joint cannot follow, the tool slows down beforehand.
+//! The tool follows a path x(s), s from 0 to L, and the joints follow q(s). Only s(t) is chosen, from rest to
+//! rest: near time-optimal under |q̇| ≤ V, |q̈| ≤ A, |q⃛| ≤ J of every joint and ṡ, s̈, s⃛ within the path's
+//! own limits. The tool never leaves the path; where a joint cannot follow, the tool slows down beforehand.
 //!
 //! # Units
-//! SI: radians or metres for joints; the path coordinate is what the path makes it (metres, or radians for a turn on
-//! the spot), and the path limits are given in the same unit.
+//! SI: radians or metres for joints; the path coordinate is what the path makes it (metres, or radians for a
+//! turn on the spot), and the path limits are given in the same unit.
+//!
+//! # How
+//! 1. The plain S-curve of the path limits is judged (`check`). If every joint can follow, it is the answer.
+//! 2. Around what the joints cannot follow, windows are laid, wide enough to brake in. Outside them the
+//!    S-curve stays, at exactly the programmed speed (`assemble`).
+//! 3. In each window a first guess of the motion (`crude`) gives a coordinate w close to time: s(w), a smooth
+//!    spline (`coordinate`). In w the fastest motion is nearly a convex program for β = ẇ² (`program`),
+//!    solved by an interior-point method (`interior_point`), roughly at first; then with that motion as the
+//!    new coordinate (`window`).
+//! 4. The motion is written as pieces of degree five in t, one from knot to knot (5 ms), that agree in
+//!    position, velocity and acceleration. These pieces, not the program, are judged; where they pass a limit
+//!    between knots, that limit is lowered there and the program is solved again from where it stood. What is
+//!    left, below 0.05 % of time as a rule, is taken away by stretching the whole motion.
+//! 5. If all that fails, the S-curve is stretched as a whole until it fits. [`Timing::kind`] tells.
+//!
+//! # What is sure
+//! Every timing that is returned has been judged with exact derivatives of the path at samples, 1.25 ms apart
+//! or closer where it was optimized, and between them as `check` describes: by prediction from sample to
+//! sample, not by interval arithmetic. The last bit of optimality is not proved; measured against TOPP-RA, which knows no jerk limit,
+//! motions take 0.4 % more time in the median. Resolution ends where rounding does: a wrist that passes its
+//! singularity at less than about 10⁻⁹ rad is no longer told from one that flips; the result is then an error
+//! or a stretched S-curve of absurd length.
+//!
+//! # The path's part
+//! The joints must stay on one branch of the inverse kinematics and be three times differentiable along the
+//! path: beside a singularity they turn fast, and the nearest solution to the last one may be another branch.
+//! Where curvature jumps (a line that runs into an arc) no speed but zero will do, and
+//! [`TimingError::Discontinuous`] says so.
+//!
+//! # What comes next
+//! Windows already begin and end in motion (`coordinate::End::Cruise`): the first three controls of β are
+//! held, which fixes ṡ, s̈ and s⃛ there. Joining blocks needs no more than this with the neighbour's state in
+//! place of the programmed speed, and a path that is three times differentiable across the joint. A rolling
+//! horizon freezes the controls that are under way in the same manner and ends at a small speed; the old tail
+//! then stays feasible while the path is unchanged.
 
 mod assemble;
 mod banded;
@@ -89,21 +125,52 @@ pub enum TimingError<E> {
         /// What the path says about it.
         error: E,
     },
-    /// A joint's position, velocity or acceleration along the path jumps, or is not a number: no speed but zero would do.
+    /// A joint's position, velocity or acceleration along the path jumps, or is not a number: no speed but
+    /// zero would do.
     Discontinuous {
         /// Path coordinate.
         position: f64,
         /// The joint, counted from 0.
         joint: usize,
     },
+    /// Not even 10¹⁷ times slower than programmed would the joints keep their limits.
+    NoSpeed,
 }
 
 /// The near time-optimal motion along `path`, from rest to rest, within all limits at every instant.
 ///
 /// Where the joints can follow the programmed speed all the way, it is the S-curve of the path limits alone.
+/// Costs a few per cent of the motion's duration where it is not, on one core, next to nothing where it is.
 ///
 /// # Errors
-/// [`TimingError`] where a limit or the length is unusable, or where no speed but zero keeps the joints' limits.
+/// [`TimingError`] where a limit or the length is unusable, or where no speed but zero keeps the joints'
+/// limits.
+///
+/// # Example
+/// A joint that turns through one radian along a path of one metre, slower than the path alone would have
+/// it:
+/// ```
+/// use seamline::kinematics::JointJet;
+/// use seamline_cell::plan::timing::{JointPath, PathLimits, TimingKind, TimingLimits, time_path};
+///
+/// struct Swing;
+/// impl JointPath<1> for Swing {
+///     type Error = ();
+///     fn length(&self) -> f64 {
+///         1.0
+///     }
+///     fn jet(&mut self, s: f64) -> Result<JointJet<1>, ()> {
+///         Ok(JointJet { position: [s], velocity: [1.0], acceleration: [0.0], jerk: [0.0] })
+///     }
+/// }
+/// let joints = TimingLimits { velocity: [0.5], acceleration: [5.0], jerk: [250.0] };
+/// let limits = PathLimits { speed: 1.0, acceleration: 10.0, jerk: 500.0 };
+/// let timing = time_path(&mut Swing, &joints, &limits).unwrap();
+/// assert_eq!(timing.kind(), TimingKind::Optimized);
+/// let middle = timing.at(timing.duration() / 2.0);
+/// assert!(middle.velocity <= 0.5 && middle.velocity > 0.498);
+/// assert_eq!(timing.slowdowns()[0].joint, 0);
+/// ```
 pub fn time_path<const N: usize, P: JointPath<N>>(
     path: &mut P,
     joints: &TimingLimits<N>,

@@ -13,10 +13,11 @@ pub struct PathState {
     pub jerk: f64,
 }
 
-/// A stretch of motion along the path: a polynomial of degree five in time, given by its derivatives at the start.
+/// A stretch of motion along the path: a polynomial of degree five in time, given by its derivatives at the
+/// start.
 ///
-/// A plain S-curve has pieces of constant jerk (`snap` and `crackle` are zero). In a [`Timing`], position, velocity
-/// and acceleration are continuous from piece to piece; the jerk may step.
+/// A plain S-curve has pieces of constant jerk (`snap` and `crackle` are zero). In a [`Timing`], position,
+/// velocity and acceleration are continuous from piece to piece; the jerk may step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TimingPiece {
     /// Duration in seconds.
@@ -36,32 +37,6 @@ pub struct TimingPiece {
 }
 
 impl TimingPiece {
-    /// The piece of constant `jerk` that starts in `state`.
-    pub(super) fn constant_jerk(state: &PathState, jerk: f64, duration: f64) -> Self {
-        let PathState { position, velocity, acceleration, .. } = *state;
-        Self { duration, position, velocity, acceleration, jerk, snap: 0.0, crackle: 0.0 }
-    }
-
-    /// The piece that joins two states in position, velocity and acceleration.
-    pub(super) fn joining(start: &PathState, end: &PathState, duration: f64) -> Self {
-        let t = duration;
-        let PathState { position, velocity, acceleration, .. } = *start;
-        // What is missing at the end if the piece went on with the start's acceleration; each scaled to a length.
-        let gap = end.position - (position + t * (velocity + t * acceleration / 2.0));
-        let gap_velocity = (end.velocity - velocity - t * acceleration) * t;
-        let gap_acceleration = (end.acceleration - acceleration) * t * t;
-        let t3 = t * t * t;
-        Self {
-            duration,
-            position,
-            velocity,
-            acceleration,
-            jerk: (60.0 * gap - 24.0 * gap_velocity + 3.0 * gap_acceleration) / t3,
-            snap: (-360.0 * gap + 168.0 * gap_velocity - 24.0 * gap_acceleration) / (t3 * t),
-            crackle: (720.0 * gap - 360.0 * gap_velocity + 60.0 * gap_acceleration) / (t3 * t * t),
-        }
-    }
-
     /// The state `time` seconds after the piece's start.
     #[must_use]
     pub fn at(&self, time: f64) -> PathState {
@@ -84,21 +59,52 @@ impl TimingPiece {
     pub fn end(&self) -> PathState {
         self.at(self.duration)
     }
+}
 
-    /// The same way in `factor` times the time.
-    #[must_use]
-    pub(super) fn stretched(&self, factor: f64) -> Self {
-        let (f1, f2, f3) = (factor, factor * factor, factor * factor * factor);
-        Self {
-            duration: self.duration * f1,
-            position: self.position,
-            velocity: self.velocity / f1,
-            acceleration: self.acceleration / f2,
-            jerk: self.jerk / f3,
-            snap: self.snap / (f3 * f1),
-            crackle: self.crackle / (f3 * f2),
-        }
+/// The piece of constant `jerk` that starts in `state`.
+pub(super) fn constant_jerk(state: &PathState, jerk: f64, duration: f64) -> TimingPiece {
+    let PathState { position, velocity, acceleration, .. } = *state;
+    TimingPiece { duration, position, velocity, acceleration, jerk, snap: 0.0, crackle: 0.0 }
+}
+
+/// The piece that joins two states in position, velocity and acceleration.
+pub(super) fn joining(start: &PathState, end: &PathState, duration: f64) -> TimingPiece {
+    let t = duration;
+    let PathState { position, velocity, acceleration, .. } = *start;
+    // What is missing at the end if the piece went on with the start's acceleration; each scaled to a length.
+    let gap = end.position - (position + t * (velocity + t * acceleration / 2.0));
+    let gap_velocity = (end.velocity - velocity - t * acceleration) * t;
+    let gap_acceleration = (end.acceleration - acceleration) * t * t;
+    let t3 = t * t * t;
+    TimingPiece {
+        duration,
+        position,
+        velocity,
+        acceleration,
+        jerk: (60.0 * gap - 24.0 * gap_velocity + 3.0 * gap_acceleration) / t3,
+        snap: (-360.0 * gap + 168.0 * gap_velocity - 24.0 * gap_acceleration) / (t3 * t),
+        crackle: (720.0 * gap - 360.0 * gap_velocity + 60.0 * gap_acceleration) / (t3 * t * t),
     }
+}
+
+/// The same way as a piece goes, in `factor` times the time.
+pub(super) fn stretched(piece: &TimingPiece, factor: f64) -> TimingPiece {
+    let f2 = factor * factor;
+    let f3 = f2 * factor;
+    TimingPiece {
+        duration: piece.duration * factor,
+        position: piece.position,
+        velocity: piece.velocity / factor,
+        acceleration: piece.acceleration / f2,
+        jerk: piece.jerk / f3,
+        snap: piece.snap / (f3 * factor),
+        crackle: piece.crackle / (f3 * f2),
+    }
+}
+
+/// Duration of a row of pieces, in seconds.
+pub(super) fn duration(pieces: &[TimingPiece]) -> f64 {
+    pieces.iter().map(|piece| piece.duration).sum()
 }
 
 /// How a timing came about.
@@ -134,8 +140,8 @@ pub struct Slowdown {
     pub place: f64,
     /// The least speed.
     pub speed: f64,
-    /// The highest constant speed that the joints could hold all along this stretch; the programmed speed where only
-    /// the change of speed takes longer than programmed.
+    /// The highest constant speed that the joints could hold all along this stretch; the programmed speed
+    /// where only the change of speed takes longer than programmed.
     pub sustainable: f64,
     /// The joint that causes it, counted from 0.
     pub joint: usize,
@@ -186,14 +192,16 @@ impl Timing {
         self.kind
     }
 
-    /// Where the motion is more than 1 % slower than the path limits alone would have it, in order of the path.
+    /// Where the motion is more than 1 % slower than the path limits alone would have it, in order of the
+    /// path.
     #[must_use]
     pub fn slowdowns(&self) -> &[Slowdown] {
         &self.slowdowns
     }
 
-    /// The state at `time` seconds after the start; before the start it is the start, after the end the end. Finding
-    /// the piece takes logarithmic time; who walks through in order may use [`Timing::pieces`] instead.
+    /// The state at `time` seconds after the start; before the start it is the start, after the end the end.
+    /// Finding the piece takes logarithmic time; who walks through in order may use [`Timing::pieces`]
+    /// instead.
     #[must_use]
     pub fn at(&self, time: f64) -> PathState {
         let index = self.starts.partition_point(|&start| start <= time).saturating_sub(1);
@@ -212,7 +220,7 @@ mod tests {
     fn a_joining_piece_meets_both_ends() {
         let start = PathState { position: 0.3, velocity: 0.2, acceleration: -1.0, jerk: 0.0 };
         let end = PathState { position: 0.301, velocity: 0.25, acceleration: 2.0, jerk: 0.0 };
-        let piece = TimingPiece::joining(&start, &end, 0.004);
+        let piece = joining(&start, &end, 0.004);
         let (first, last) = (piece.at(0.0), piece.end());
         assert_eq!((first.position, first.velocity, first.acceleration), (0.3, 0.2, -1.0));
         assert!((last.position - end.position).abs() < 1e-15);
@@ -238,7 +246,7 @@ mod tests {
         assert!((slope(|state| state.position) - here.velocity).abs() < 1e-8);
         assert!((slope(|state| state.velocity) - here.acceleration).abs() < 1e-8);
         assert!((slope(|state| state.acceleration) - here.jerk).abs() < 1e-8);
-        let slow = piece.stretched(factor).at(t * factor);
+        let slow = stretched(&piece, factor).at(t * factor);
         assert!((slow.position - here.position).abs() < 1e-14);
         assert!((slow.velocity * factor - here.velocity).abs() < 1e-14);
         assert!((slow.acceleration * factor.powi(2) - here.acceleration).abs() < 1e-14);

@@ -5,9 +5,10 @@
 //! q̇² = q_w² β,  q̈ = q_ww β + ½ q_w β′,  q⃛ = (q_www β + 3/2 q_ww β′ + ½ q_w β″) √β,
 //!
 //! so that velocity and acceleration limits are linear in β and its derivatives, and the jerk limit reads
-//! |q_www β + 3/2 q_ww β′ + ½ q_w β″| ≤ J β^(−1/2). Its right side is convex in β: replaced by a tangent it becomes a
-//! linear constraint that is never looser than the true one. The duration ∫ β^(−1/2) dw is convex too. β is a uniform cubic
-//! B-spline, and the limits are imposed at its knots and in the middle between them.
+//! |q_www β + 3/2 q_ww β′ + ½ q_w β″| ≤ J β^(−1/2). Its right side is convex in β: replaced by a tangent it
+//! becomes a linear constraint that is never looser than the true one. The duration ∫ β^(−1/2) dw is convex
+//! too. β is a uniform cubic B-spline, and the limits are imposed at its knots and in the middle between
+//! them.
 
 /// What one axis (a joint, or the path itself) demands at one site, as shares of its limits: the factors of
 /// β, h β′ and h² β″.
@@ -87,7 +88,8 @@ impl Site {
         }
     }
 
-    /// A symmetric matrix over (β, h β′, h² β″), lower triangle by columns, carried over to the four controls.
+    /// A symmetric matrix over (β, h β′, h² β″), lower triangle by columns, carried over to the four
+    /// controls.
     #[inline]
     pub(super) fn square(&self, m: &[f64; 6]) -> [[f64; SUPPORT]; SUPPORT] {
         let [aa, ba, ca, bb, cb, cc] = *m;

@@ -1,7 +1,7 @@
 //! The plain motion: rest to rest under path limits alone, seven phases of constant jerk.
 
 use super::PathLimits;
-use super::motion::{PathState, TimingPiece};
+use super::motion::{PathState, TimingPiece, constant_jerk};
 
 /// The time-optimal motion over `length` from rest to rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,7 +40,8 @@ impl SCurve {
         Self { length, speed: peak, jerk, jerk_time, acceleration_time, cruise_time }
     }
 
-    /// Length of the way that either ramp takes; constant speed is held from here to the same distance from the end.
+    /// Length of the way that either ramp takes; constant speed is held from here to the same distance from
+    /// the end.
     pub(super) fn ramp(&self) -> f64 {
         (self.length - self.speed * self.cruise_time) / 2.0
     }
@@ -78,7 +79,7 @@ impl SCurve {
         let phases = [(jerk, self.jerk_time), (0.0, self.acceleration_time), (-jerk, self.jerk_time)];
         let mut state = *start;
         phases.into_iter().filter(|&(_, duration)| duration > 0.0).map(move |(jerk, duration)| {
-            let piece = TimingPiece::constant_jerk(&state, jerk, duration);
+            let piece = constant_jerk(&state, jerk, duration);
             state = piece.end();
             piece
         })
@@ -91,8 +92,8 @@ mod tests {
 
     const LIMITS: PathLimits = PathLimits { speed: 0.25, acceleration: 10.0, jerk: 500.0 };
 
-    /// Lengths over seven decades and three speeds: the motion ends at rest at the end, keeps its limits, and one
-    /// of them is always at work.
+    /// Lengths over seven decades and three speeds: the motion ends at rest at the end, keeps its limits, and
+    /// one of them is always at work.
     #[test]
     fn every_length_ends_at_rest_within_its_limits() {
         for speed in [0.005, 0.25, 3.0] {

@@ -95,8 +95,8 @@ impl Cause {
     }
 }
 
-/// The finished entry. Where every place would allow the programmed speed, it is gaining or losing speed that the joints
-/// cannot do fast enough.
+/// The finished entry. Where every place would allow the programmed speed, it is gaining or losing speed that
+/// the joints cannot do fast enough.
 fn closed(slowdown: Slowdown, to: f64, cause: &Cause) -> Slowdown {
     let (speed, joint, order) = cause.speed;
     if speed < slowdown.sustainable {

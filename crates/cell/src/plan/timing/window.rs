@@ -2,8 +2,8 @@
 
 use super::check::{Check, Load};
 use super::coordinate::{Coordinate, End};
-use super::interior_point::{InteriorPoint, Outcome};
-use super::motion::{PathState, TimingPiece};
+use super::interior_point::InteriorPoint;
+use super::motion::{PathState, TimingPiece, duration, joining};
 use super::program::{Demand, Program};
 use super::{JointPath, PathLimits, TimingError, TimingLimits, crude};
 
@@ -20,7 +20,6 @@ const STRETCH: f64 = 1.0005;
 /// Shares of a limit that a repair leaves: what it aims at, and the least.
 const AIM: f64 = 0.9995;
 const LEAST_SHARE: f64 = 0.2;
-
 /// Slack of the speed limit at a held end; sites next to it whose speed limit is not lowered.
 const HELD_SLACK: f64 = 0.01;
 const HELD_SITES: usize = 20;
@@ -45,7 +44,7 @@ impl Passage {
 
     /// Duration with the stretching.
     pub(super) fn duration(&self) -> f64 {
-        if self.pieces.is_empty() { f64::INFINITY } else { time(&self.pieces) * self.stretch }
+        if self.pieces.is_empty() { f64::INFINITY } else { duration(&self.pieces) * self.stretch }
     }
 }
 
@@ -61,7 +60,8 @@ pub(super) struct Workshop {
 }
 
 impl Workshop {
-    /// The fastest motion through the window that was found.
+    /// The fastest motion through the window that was found: on the coordinate of the first guess roughly,
+    /// then on the coordinate of that motion, with limits lowered until the judge is content.
     pub(super) fn pass<const N: usize, P: JointPath<N>>(
         &mut self,
         path: &mut P,
@@ -72,21 +72,21 @@ impl Workshop {
         let coarse = crude::coordinate(path, joints, limits, window, COARSE_STEP)?;
         self.set_sites(path, window, &coarse)?;
         self.set_demands(joints, limits, window, coarse.step);
-        let outcome = self.solver.solve(&self.program, COARSE_ACCURACY);
-        let Some(pieces) = self.pieces(outcome, &coarse, window, limits.speed) else {
+        let solved = self.solver.solve(&self.program, COARSE_ACCURACY);
+        let Some(pieces) = self.pieces(solved, &coarse, window, limits.speed) else {
             return Ok(Passage::NONE);
         };
-        let knots = crude::knots(time(&pieces), STEP);
+        let knots = crude::knots(duration(&pieces), STEP);
         let coordinate = Coordinate::following(&pieces, knots, window.ends, limits.speed);
         self.set_sites(path, window, &coordinate)?;
         let mut best = Passage::NONE;
         for round in 0..=REPAIRS {
             self.set_demands(joints, limits, window, coordinate.step);
-            let outcome = match round {
+            let solved = match round {
                 0 => self.solver.solve(&self.program, ACCURACY),
                 _ => self.solver.solve_again(&self.program, ACCURACY),
             };
-            let Some(pieces) = self.pieces(outcome, &coordinate, window, limits.speed) else { break };
+            let Some(pieces) = self.pieces(solved, &coordinate, window, limits.speed) else { break };
             let mut check = Check::new(path, joints, limits);
             let mut loads = Vec::with_capacity(2 * pieces.len());
             for piece in &pieces {
@@ -128,7 +128,7 @@ impl Workshop {
             self.derivatives.push([w.d1, w.d2, w.d3]);
         }
         self.shares.clear();
-        self.shares.resize(self.derivatives.len(), [1.0, 1.0, 1.0]);
+        self.shares.resize(self.derivatives.len(), [1.0; 3]);
         // At a held end the speed is the programmed one, and no unknown can change it.
         for (end, site) in window.ends.into_iter().zip([0, coordinate.sites() - 1]) {
             if end == End::Cruise {
@@ -158,15 +158,16 @@ impl Workshop {
         }
     }
 
-    /// The motion in time that the solution stands for: one piece between two knots. None where it makes no sense.
+    /// The motion in time that the solution stands for: one piece between two knots. None where it makes no
+    /// sense.
     fn pieces(
         &self,
-        outcome: Outcome,
+        solved: bool,
         coordinate: &Coordinate,
         window: &Window,
         speed: f64,
     ) -> Option<Vec<TimingPiece>> {
-        if outcome == Outcome::Broken {
+        if !solved {
             return None;
         }
         let controls = self.solver.controls();
@@ -195,9 +196,10 @@ impl Workshop {
         (0..last)
             .map(|knot| {
                 let end = state(knot + 1);
-                let piece = TimingPiece::joining(&start, &end, step * duration(&controls[knot..knot + 4]));
+                let piece = joining(&start, &end, step * time_between(&controls[knot..knot + 4]));
                 start = end;
-                (piece.duration > 0.0 && piece.duration.is_finite()).then_some(piece)
+                let sound = piece.duration > 0.0 && piece.duration.is_finite() && start.velocity >= 0.0;
+                sound.then_some(piece)
             })
             .collect()
     }
@@ -227,12 +229,9 @@ fn scaled(limits: [f64; 3], shares: [f64; 3]) -> [f64; 3] {
     core::array::from_fn(|order| limits[order] * shares[order])
 }
 
-fn time(pieces: &[TimingPiece]) -> f64 {
-    pieces.iter().map(|piece| piece.duration).sum()
-}
-
-/// ∫ β^(−1/2) over one interval between knots, in knots: Gauss's rule with four nodes, of which β sees a cubic.
-fn duration(controls: &[f64]) -> f64 {
+/// ∫ β^(−1/2) over one interval between knots, in knots: Gauss's rule with four nodes, of which β sees a
+/// cubic.
+fn time_between(controls: &[f64]) -> f64 {
     const NODES: [(f64, f64); 4] = [
         (0.069_431_844_202_973_7, 0.173_927_422_568_726_93),
         (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
