@@ -57,6 +57,10 @@ pub(super) fn increment(from: &Pose, target: &Target, frame: Frame, cell: &Cell)
     }
 }
 
+/// A move that is stretched by more than this is refused.
+const STRETCH_MAX: f64 = 50.0;
+const NO_USEFUL_SPEED: &str = "the path passes so near to a singularity that no useful speed is left; tilt the torch a few degrees, or use MOVJ";
+
 impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     /// A move of the tool centre point along a path, from rest to rest.
     pub(super) fn path_move(
@@ -88,11 +92,18 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             TimingError::Path { position, error } => {
                 self.path_problem(path, position, &Reach(&error).to_string())
             }
-            other => Problem::Path { place: place(path, 0.0), reason: format!("{other:?}") },
+            TimingError::Discontinuous { position, joint } => {
+                self.path_problem(path, position, &self.follow_reason(&FollowError::Jump { joint }))
+            }
+            TimingError::NoSpeed => self.path_problem(path, 0.0, NO_USEFUL_SPEED),
+            TimingError::Length(_) | TimingError::PathLimit { .. } | TimingError::JointLimit { .. } => {
+                self.path_problem(path, 0.0, &format!("its limits give no motion: {error:?}"))
+            }
         })?;
         info.constant_part = constant_part(&timing, limits.speed);
         let end = joints.end();
         let mut notices = self.slowdowns(path, &timing, &limits)?;
+        notices.extend(self.stretch(path, &timing, &limits)?);
         notices.extend(goal.and_then(|goal| self.other_configuration(goal, &end)));
         let commands = self.blocks(at, segment, path, &timing);
         self.joints = end;
@@ -105,8 +116,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     }
 
     fn blocks(&self, at: &Location, segment: u32, path: &Path, timing: &Timing) -> Vec<Command<N>> {
-        let pieces: Vec<TimingPiece> = timing.pieces().iter().map(piece).collect();
-        let chunks = pieces.chunks(BLOCK_PIECES);
+        let chunks = timing.pieces().chunks(BLOCK_PIECES);
         let last = chunks.len().saturating_sub(1);
         let block = |(k, pieces): (usize, &[TimingPiece])| {
             let motion = PathMotion::new(*path, &self.tool.flange_from_tcp, pieces)?;
@@ -145,15 +155,33 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             Order::Jerk => "jerk",
         };
         format!(
-            "slows from {:.1} to {:.1} {speed_unit} between {:.1} and {:.1} {unit} (least at {:.1} {unit}): joint {} is at its {order} limit{}",
+            "slows from {:.1} to {:.1} {speed_unit} between {:.1} and {:.1} {unit} (least at {:.1} {unit}){}: \
+             joint {} is at its {order} limit{}",
             limits.speed * factor,
             slowdown.speed * factor,
             slowdown.from * factor,
             slowdown.to * factor,
             slowdown.place * factor,
-            self.arm.joint_names[slowdown.joint],
             if self.arc { " with the arc on" } else { "" },
+            self.arm.joint_names[slowdown.joint],
+            remedy(slowdown, limits, speed_unit, factor),
         )
+    }
+
+    /// No optimum was found: the whole move takes longer. Bearable up to a point, and then a problem.
+    fn stretch(&self, path: &Path, timing: &Timing, limits: &PathLimits) -> Result<Option<String>, Problem> {
+        if timing.kind() != TimingKind::Stretched {
+            return Ok(None);
+        }
+        let ramps = limits.speed / limits.acceleration + limits.acceleration / limits.jerk;
+        let times = timing.duration() / (path.length() / limits.speed + ramps);
+        if times > STRETCH_MAX {
+            let at = timing.slowdowns().first().map_or(0.0, |slowdown| slowdown.place);
+            return Err(self.path_problem(path, at, NO_USEFUL_SPEED));
+        }
+        Ok(Some(format!(
+            "the whole move takes {times:.1} times as long as programmed: its joints leave no better speed"
+        )))
     }
 
     /// The move ends in another turn or configuration than the point was taught in.
@@ -189,6 +217,15 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     }
 }
 
+/// What would keep the speed constant.
+fn remedy(slowdown: &Slowdown, limits: &PathLimits, speed_unit: &str, factor: f64) -> String {
+    if slowdown.sustainable >= limits.speed {
+        return String::new();
+    }
+    let held = slowdown.sustainable * factor;
+    format!("; {held:.1} {speed_unit} could be held all along, or more with the torch tilted a few degrees")
+}
+
 /// Unit of length, unit of speed, and the factor from SI to them.
 fn units(path: &Path) -> (&'static str, &'static str, f64) {
     match path.measure() {
@@ -202,19 +239,13 @@ fn place(path: &Path, s: f64) -> Place {
     Place { at: s * factor, of: path.length() * factor, unit }
 }
 
-fn piece(piece: &super::timing::TimingPiece) -> TimingPiece {
-    let super::timing::TimingPiece { duration, position, velocity, acceleration, jerk, snap, crackle } =
-        *piece;
-    TimingPiece { duration, position, velocity, acceleration, jerk, snap, crackle }
-}
-
 /// From where to where the plan holds the programmed speed.
 fn constant_part(timing: &Timing, speed: f64) -> Option<[f64; 2]> {
     if timing.kind() != TimingKind::Plain {
         return None;
     }
     // The cruise of the plain S-curve: the piece without acceleration and jerk, at the programmed speed.
-    let cruises = |piece: &&super::timing::TimingPiece| {
+    let cruises = |piece: &&TimingPiece| {
         piece.acceleration == 0.0 && piece.jerk == 0.0 && piece.velocity >= speed * (1.0 - 1e-9)
     };
     let piece = timing.pieces().iter().find(cruises)?;
