@@ -105,7 +105,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let mut notices = self.slowdowns(path, &timing, &limits)?;
         notices.extend(self.stretch(path, &timing, &limits)?);
         notices.extend(goal.and_then(|goal| self.other_configuration(goal, &end)));
-        let commands = self.blocks(at, segment, path, &timing);
+        let commands = self.blocks(at, segment, path, &timing, &limits);
         self.joints = end;
         Ok(Planned { commands, segment: Some(info), notices, duration: timing.duration() })
     }
@@ -115,11 +115,19 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         TimingLimits { velocity: limits.velocity, acceleration: limits.acceleration, jerk: limits.jerk }
     }
 
-    fn blocks(&self, at: &Location, segment: u32, path: &Path, timing: &Timing) -> Vec<Command<N>> {
+    fn blocks(
+        &self,
+        at: &Location,
+        segment: u32,
+        path: &Path,
+        timing: &Timing,
+        limits: &PathLimits,
+    ) -> Vec<Command<N>> {
+        let along = (limits.acceleration, limits.jerk);
         let chunks = timing.pieces().chunks(BLOCK_PIECES);
         let last = chunks.len().saturating_sub(1);
         let block = |(k, pieces): (usize, &[TimingPiece])| {
-            let motion = PathMotion::new(*path, &self.tool.flange_from_tcp, pieces)?;
+            let motion = PathMotion::new(*path, &self.tool.flange_from_tcp, along, pieces)?;
             Some(Command::Move(Block {
                 line: at.line,
                 segment,

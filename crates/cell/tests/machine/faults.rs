@@ -215,7 +215,7 @@ fn beginning(motion: &PathMotion) -> PathMotion {
         }
     };
     let pieces: Vec<_> = (0..40).map(piece).collect();
-    PathMotion::new(motion.path, &independent_torch(), &pieces).unwrap()
+    PathMotion::new(motion.path, &independent_torch(), (motion.acceleration, motion.jerk), &pieces).unwrap()
 }
 
 /// A job queue that would drive through a limit: the envelope stops the command before it leaves the cycle.

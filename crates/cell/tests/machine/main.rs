@@ -4,6 +4,7 @@
     clippy::unwrap_used,
     clippy::panic,
     clippy::needless_range_loop,
+    clippy::print_stdout,
     reason = "tests may; joints are counted"
 )]
 

@@ -2,6 +2,7 @@
 
 use seamline::control::{Block, Command, Event, Mode, Motion};
 use seamline::kinematics::{JointJet, Kinematics};
+use seamline::path::PathState;
 use seamline_cell::cell::Cell;
 use seamline_cell::job::{MovePath, Speed};
 use seamline_cell::plan::{Arm, Planner};
@@ -47,8 +48,8 @@ fn random_line(
     arm: &Ar2010,
 ) -> (Vec<Command<6>>, [f64; 6], f64) {
     for _ in 0..1_000 {
-        let start = random.joints(case % 3 == 0);
-        let mut end = random.joints(case % 3 == 0);
+        let start = random.joints(case.is_multiple_of(3));
+        let mut end = random.joints(case.is_multiple_of(3));
         let share = random.within(0.1, 0.6);
         (0..6).for_each(|k| end[k] = start[k] + share * (end[k] - start[k]));
         let mm_s = 5.0 * 200_f64.powf(random.unit());
@@ -77,6 +78,18 @@ fn joints(blocks: &[Block<6>], mut time: f64, arm: &Ar2010, seed: &[f64; 6]) -> 
     None
 }
 
+/// The motion along the path at a programme time, and its acceleration limit.
+fn along(blocks: &[Block<6>], mut time: f64) -> Option<(PathState, f64)> {
+    for block in blocks {
+        if time < block.duration() {
+            let Motion::Path(motion) = &block.motion else { return None };
+            return Some((motion.state(time), motion.acceleration)).filter(|(state, _)| state.velocity > 0.0);
+        }
+        time -= block.duration();
+    }
+    None
+}
+
 /// Least time to stand under the acceleration limits alone, by small steps, from full rate at `now`.
 fn second_order_stop(blocks: &[Block<6>], mut now: f64, arm: &Ar2010, mut seed: [f64; 6]) -> f64 {
     const STEP: f64 = 1e-4;
@@ -90,6 +103,9 @@ fn second_order_stop(blocks: &[Block<6>], mut now: f64, arm: &Ar2010, mut seed: 
             if v != 0.0 {
                 slope = slope.max((-limit - a * v.signum()) / v.abs());
             }
+        }
+        if let Some((state, limit)) = along(blocks, now) {
+            slope = slope.max((-limit - state.acceleration * rate * rate) / state.velocity);
         }
         now += rate * STEP;
         rate += (slope * STEP).max(-rate);

@@ -72,6 +72,10 @@ pub enum Motion<const N: usize> {
 pub struct PathMotion {
     /// The tool centre point's path in the base frame.
     pub path: Path,
+    /// Highest acceleration along the path while the rate changes, in the path coordinate's unit per s².
+    pub acceleration: f64,
+    /// Highest jerk likewise.
+    pub jerk: f64,
     tcp_from_flange: Pose,
     pieces: [TimingPiece; BLOCK_PIECES],
     /// When each piece begins, in seconds from the block's start.
@@ -81,10 +85,16 @@ pub struct PathMotion {
 }
 
 impl PathMotion {
-    /// A motion along `path` with the tool at `flange_from_tcp`. `None` where there are no pieces or more than
+    /// A motion along `path` with the tool at `flange_from_tcp`, and the limits along the path that a change of the
+    /// rate keeps (acceleration, jerk; infinite for none). `None` where there are no pieces or more than
     /// [`BLOCK_PIECES`].
     #[must_use]
-    pub fn new(path: Path, flange_from_tcp: &Pose, timing: &[TimingPiece]) -> Option<Self> {
+    pub fn new(
+        path: Path,
+        flange_from_tcp: &Pose,
+        (acceleration, jerk): (f64, f64),
+        timing: &[TimingPiece],
+    ) -> Option<Self> {
         if timing.is_empty() || timing.len() > BLOCK_PIECES {
             return None;
         }
@@ -95,7 +105,16 @@ impl PathMotion {
             duration += piece.duration;
         }
         let tcp_from_flange = flange_from_tcp.inverse();
-        Some(Self { path, tcp_from_flange, pieces, starts, count: timing.len(), duration })
+        Some(Self {
+            path,
+            acceleration,
+            jerk,
+            tcp_from_flange,
+            pieces,
+            starts,
+            count: timing.len(),
+            duration,
+        })
     }
 
     /// Duration in seconds of programme time.

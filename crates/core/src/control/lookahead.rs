@@ -3,16 +3,39 @@
 /// Number of samples held.
 pub(super) const CAPACITY: usize = 80;
 
-/// Derivatives of the joints with respect to programme time at one instant.
+/// Derivatives with respect to programme time at one instant: of the joints, and of the path coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct JointMotion<const N: usize> {
     pub(super) velocity: [f64; N],
     pub(super) acceleration: [f64; N],
     pub(super) jerk: [f64; N],
+    pub(super) path: AlongPath,
+}
+
+/// Motion of the tool along its path, with the limits that the cell sets for it; infinite where there is no path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct AlongPath {
+    pub(super) velocity: f64,
+    pub(super) acceleration: f64,
+    pub(super) jerk: f64,
+    pub(super) acceleration_limit: f64,
+    pub(super) jerk_limit: f64,
+}
+
+impl AlongPath {
+    /// No path.
+    pub(super) const NONE: Self = Self {
+        velocity: 0.0,
+        acceleration: 0.0,
+        jerk: 0.0,
+        acceleration_limit: f64::INFINITY,
+        jerk_limit: f64::INFINITY,
+    };
 }
 
 impl<const N: usize> JointMotion<N> {
-    pub(super) const REST: Self = Self { velocity: [0.0; N], acceleration: [0.0; N], jerk: [0.0; N] };
+    pub(super) const REST: Self =
+        Self { velocity: [0.0; N], acceleration: [0.0; N], jerk: [0.0; N], path: AlongPath::NONE };
 }
 
 /// A ring of samples at whole multiples of a spacing in programme time, from just before now to the horizon.

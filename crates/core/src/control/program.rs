@@ -1,10 +1,11 @@
 //! Tier 2: where the program stands, and how far programme time goes on in this cycle.
 
 use super::block::{Block, Command, Motion};
-use super::lookahead::{JointMotion, Lookahead};
+use super::lookahead::{AlongPath, JointMotion, Lookahead};
 use super::rate::{Rate, RateLimits};
 use crate::geometry::Pose;
 use crate::kinematics::{JointJet, Kinematics};
+use crate::path::PathState;
 use crate::safety::Fault;
 
 /// Commands held between the queue and the motion.
@@ -251,14 +252,28 @@ impl<const N: usize> Program<N> {
             let Command::Move(block) = self.nth(k) else { continue };
             let end = start + block.duration();
             if time < end {
-                let jet = joints_on(block, (time - start).max(0.0), &self.ahead_position, kinematics)?;
+                let since = (time - start).max(0.0);
+                let jet = joints_on(block, since, &self.ahead_position, kinematics)?;
                 let JointJet { position, velocity, acceleration, jerk } = jet;
+                let path = along_path(block, since);
                 self.ahead_position = position;
-                return Ok(Some(JointMotion { velocity, acceleration, jerk }));
+                return Ok(Some(JointMotion { velocity, acceleration, jerk, path }));
             }
             (start, rests) = (end, block.ends_at_rest);
         }
         Ok((rests && self.count < PENDING).then_some(JointMotion::REST))
+    }
+}
+
+/// The tool's motion along its path at a time since a block's start.
+fn along_path<const N: usize>(block: &Block<N>, time: f64) -> AlongPath {
+    match &block.motion {
+        Motion::Joint(_) => AlongPath::NONE,
+        Motion::Path(motion) => {
+            let PathState { velocity, acceleration, jerk, .. } = motion.state(time);
+            let (acceleration_limit, jerk_limit) = (motion.acceleration, motion.jerk);
+            AlongPath { velocity, acceleration, jerk, acceleration_limit, jerk_limit }
+        }
     }
 }
 

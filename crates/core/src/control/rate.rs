@@ -6,12 +6,14 @@
 //! q̇ = q′ r        q̈ = q″ r² + q′ c        q⃛ = q‴ r³ + 3 q″ r c + q′ u,   u = ċ
 //! ```
 //!
+//! and the path coordinate likewise, as one more axis with the cell's limits for the tool.
+//!
 //! The planned motion keeps every limit at r = 1, so that any *constant* r ≤ 1 keeps them too. The slope is what must
 //! be watched. At every instant a way back to a constant rate is at hand, already checked against the motion ahead:
 //! the slope goes linearly to zero within `recovery`. In each cycle the strongest change of u is looked for, for which
 //! such a way exists again; where none is found, the way at hand is followed. So there is always an answer.
 
-use super::lookahead::{Between, Lookahead};
+use super::lookahead::{Between, JointMotion, Lookahead};
 
 /// Limits of the joints, per axis, all positive: velocity is kept by the plan, since r ≤ 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,14 +25,14 @@ pub(super) struct RateLimits<const N: usize> {
 /// Share of a limit that changes of the rate may use, so that interpolating between samples cannot pass the limit.
 const ACCELERATION_SHARE: f64 = 0.99;
 const JERK_SHARE: f64 = 0.98;
-/// Bound on u: where the joints hardly move, a full change of the rate still takes about 20 ms.
-const CURVATURE_MAX: f64 = 1e4;
+/// Bound on u: where nothing moves, a full change of the rate still takes about 4 ms.
+const CURVATURE_MAX: f64 = 2.5e5;
 /// Rates closer than this are one.
 const SAME_RATE: f64 = 1e-9;
 /// Recoveries that are tried, shortest first, in samples of the look-ahead.
 const RECOVERIES: [u8; 13] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 40, 52, 64];
 /// Shares of the strongest change that are tried, in this order.
-const SHARES: [f64; 4] = [1.0, 0.5, 0.25, 0.0625];
+const SHARES: [f64; 5] = [1.0, 0.7, 0.4, 0.2, 0.05];
 
 /// The rate and its slope, with the way back to a constant rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -138,21 +140,22 @@ impl Rate {
     ) -> f64 {
         let r = self.value;
         let mut strongest = CURVATURE_MAX;
-        for axis in 0..N {
-            let velocity = direction * here.velocity(axis);
+        for axis in 0..=N {
+            let motion = here.axis(axis, limits);
+            let velocity = direction * motion.velocity;
             if velocity == 0.0 {
                 continue;
             }
             // Both limits read |fixed + velocity·x| ≤ bound for x = direction·u ≥ 0: the nearer end counts.
             let most = |fixed: f64, bound: f64| (bound - fixed * velocity.signum()) / velocity.abs();
-            let acceleration = here.acceleration(axis) * r * r;
-            let bound = (ACCELERATION_SHARE * limits.acceleration[axis]).max(acceleration.abs());
+            let acceleration = motion.acceleration * r * r;
+            let bound = (ACCELERATION_SHARE * motion.acceleration_limit).max(acceleration.abs());
             let slope = direction * self.slope;
             strongest = strongest.min((most(acceleration, bound) - slope) / period);
-            for planned in [here.left.jerk[axis], here.right.jerk[axis]] {
+            for planned in motion.jerk {
                 let planned = planned * r * r * r;
-                let bound = (JERK_SHARE * limits.jerk[axis]).max(planned.abs());
-                let fixed = planned + 3.0 * here.acceleration(axis) * r * self.slope;
+                let bound = (JERK_SHARE * motion.jerk_limit).max(planned.abs());
+                let fixed = planned + 3.0 * motion.acceleration * r * self.slope;
                 strongest = strongest.min(most(fixed, bound));
             }
         }
@@ -194,31 +197,62 @@ impl Rate {
     }
 }
 
+/// One axis between two samples: a joint, or the path coordinate.
+#[derive(Debug, Clone, Copy)]
+struct Axis {
+    velocity: f64,
+    acceleration: f64,
+    /// Of both samples: between them it may switch.
+    jerk: [f64; 2],
+    acceleration_limit: f64,
+    jerk_limit: f64,
+}
+
 impl<const N: usize> Between<'_, N> {
-    fn velocity(&self, axis: usize) -> f64 {
-        self.left.velocity[axis] + (self.right.velocity[axis] - self.left.velocity[axis]) * self.fraction
+    /// Joint `k`, or with k = N the path coordinate.
+    fn axis(&self, k: usize, limits: &RateLimits<N>) -> Axis {
+        let pick = |sample: &JointMotion<N>| {
+            if k < N {
+                (sample.velocity[k], sample.acceleration[k], sample.jerk[k])
+            } else {
+                (sample.path.velocity, sample.path.acceleration, sample.path.jerk)
+            }
+        };
+        let (left, right) = (pick(self.left), pick(self.right));
+        let (acceleration_limit, jerk_limit) = if k < N {
+            (limits.acceleration[k], limits.jerk[k])
+        } else {
+            let (left, right) = (&self.left.path, &self.right.path);
+            (left.acceleration_limit.min(right.acceleration_limit), left.jerk_limit.min(right.jerk_limit))
+        };
+        Axis {
+            velocity: left.0 + (right.0 - left.0) * self.fraction,
+            acceleration: self.acceleration((left.1, left.2), (right.1, right.2)),
+            jerk: [left.2, right.2],
+            acceleration_limit,
+            jerk_limit,
+        }
     }
 
-    /// Exact where the jerk is constant but for one switch between the samples.
-    fn acceleration(&self, axis: usize) -> f64 {
-        let (left, right) = (self.left, self.right);
-        let from_left = left.acceleration[axis] + left.jerk[axis] * self.fraction * self.spacing;
-        let from_right = right.acceleration[axis] - right.jerk[axis] * (1.0 - self.fraction) * self.spacing;
-        if left.jerk[axis] > right.jerk[axis] { from_left.min(from_right) } else { from_left.max(from_right) }
+    /// From acceleration and jerk of both samples; exact where the jerk is constant but for one switch between them.
+    fn acceleration(&self, left: (f64, f64), right: (f64, f64)) -> f64 {
+        let from_left = left.0 + left.1 * self.fraction * self.spacing;
+        let from_right = right.0 - right.1 * (1.0 - self.fraction) * self.spacing;
+        if left.1 > right.1 { from_left.min(from_right) } else { from_left.max(from_right) }
     }
 
     /// Whether rate r with slope c and curvature u keeps acceleration and jerk of every axis here. What the plan itself
     /// uses is always allowed: a constant rate below 1 is.
     fn keeps(&self, r: f64, c: f64, u: f64, limits: &RateLimits<N>) -> bool {
-        (0..N).all(|axis| {
-            let (velocity, acceleration) = (self.velocity(axis), self.acceleration(axis));
-            let planned = acceleration * r * r;
-            let bound = (ACCELERATION_SHARE * limits.acceleration[axis]).max(planned.abs());
-            (planned + velocity * c).abs() <= bound
-                && [self.left.jerk[axis], self.right.jerk[axis]].into_iter().all(|jerk| {
+        (0..=N).all(|k| {
+            let axis = self.axis(k, limits);
+            let planned = axis.acceleration * r * r;
+            let bound = (ACCELERATION_SHARE * axis.acceleration_limit).max(planned.abs());
+            (planned + axis.velocity * c).abs() <= bound
+                && axis.jerk.into_iter().all(|jerk| {
                     let planned = jerk * r * r * r;
-                    let bound = (JERK_SHARE * limits.jerk[axis]).max(planned.abs());
-                    (planned + 3.0 * acceleration * r * c + velocity * u).abs() <= bound
+                    let bound = (JERK_SHARE * axis.jerk_limit).max(planned.abs());
+                    (planned + 3.0 * axis.acceleration * r * c + axis.velocity * u).abs() <= bound
                 })
         })
     }

@@ -1,6 +1,6 @@
 use std::vec::Vec;
 
-use super::super::lookahead::JointMotion;
+use super::super::lookahead::AlongPath;
 use super::*;
 
 const PERIOD: f64 = 1e-3;
@@ -84,7 +84,7 @@ impl Plan {
     fn motion(&self, time: f64) -> JointMotion<3> {
         let all = self.at(time);
         let pick = |k: usize| std::array::from_fn(|axis| all[axis][k]);
-        JointMotion { velocity: pick(1), acceleration: pick(2), jerk: pick(3) }
+        JointMotion { velocity: pick(1), acceleration: pick(2), jerk: pick(3), path: AlongPath::NONE }
     }
 
     /// Time of the fastest stop under the acceleration limits alone, by small steps.
