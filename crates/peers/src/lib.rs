@@ -3,6 +3,8 @@
 #[path = "../../core/tests/otg_support/mod.rs"]
 pub mod otg_support;
 
+pub mod compare;
+
 use rsruckig::prelude as rs;
 use seamline::otg::{Control, Input, Synchronization};
 
