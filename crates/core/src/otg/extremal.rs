@@ -206,6 +206,8 @@ impl Family {
 
     /// The displacement, piece by piece, where the acceleration stays above zero: such a motion may be much shorter than the rises drawn out to
     /// zero acceleration, and would drown in their rounding.
+    #[cold]
+    #[inline(never)]
     fn displacement_of_short(&self, x: f64, n: f64, hold: f64) -> f64 {
         let Self { v0, a0, af, .. } = *self;
         let (rise, fall, last) = (x - a0, x + n, n + af);
