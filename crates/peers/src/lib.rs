@@ -87,7 +87,7 @@ impl Ruckig {
         }
         let duration = self.duration();
         // The peer's state at a time needs a duration.
-        if !(duration > 0.0) {
+        if duration.is_nan() || duration <= 0.0 {
             return Some(Answer { duration, miss: f64::INFINITY });
         }
         let (p, v, _) = self.at_time(duration * (1.0 - 1e-15));

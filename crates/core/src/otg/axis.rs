@@ -108,7 +108,7 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// An axis that nobody plans. All zeros, so that it costs next to nothing.
+    /// An axis that nobody plans.
     pub(super) const IDLE: Self = Self {
         motion: Motion::Only(0.0),
         brake: 0.0,
