@@ -1,4 +1,5 @@
 //! Unlimited jerk and acceleration, zero limits, mixed controls, and targets that move.
+#![allow(clippy::panic)] // its helpers are tests too
 
 mod otg_support;
 
@@ -218,6 +219,39 @@ fn retargeting() {
             }
         }
         assert!(changes > 1_000);
+    }
+}
+
+/// 3 × 30,000 cycles of three axes whose target, with its velocity, wanders on every cycle: planned anew each time, no error, no jump.
+#[test]
+fn a_wandering_target() {
+    for distribution in [Distribution::PeerTest, Distribution::Robot, Distribution::Millimetres] {
+        let mut random = Random(26);
+        let mut input: Input<3> = random_input(&mut random, distribution);
+        (input.current.velocity, input.current.acceleration) = ([0.0; 3], [0.0; 3]);
+        let whole = calculate(&input).unwrap().duration();
+        let (cycle, home) = (whole / 300.0, input.target.position);
+        let (mut generator, mut output) = (Generator::new(cycle), Output::default());
+        for step in 0..30_000 {
+            for axis in 0..3 {
+                let l = &input.limits;
+                let speed = 0.2 * l.velocity_max[axis].min(-l.velocity_min[axis]);
+                // Three slow waves and noise.
+                let phase = f64::from(step) / 300.0 + axis as f64;
+                input.target.position[axis] =
+                    home[axis] + speed * whole * phase.sin() + speed * cycle * random.normal(0.1);
+                input.target.velocity[axis] = speed * phase.cos();
+                input.target.acceleration[axis] = 0.0;
+            }
+            let before = input.current;
+            generator.update(&input, &mut output).unwrap_or_else(|e| panic!("{e}\n{input:?}"));
+            let after = output.sample.state();
+            assert!(
+                output.is_new && is_smooth(&input, &before, &after, cycle),
+                "{distribution:?}\n{input:?}\n{after:?}"
+            );
+            output.pass_to_input(&mut input);
+        }
     }
 }
 

@@ -1,4 +1,5 @@
 //! What must hold whatever the problem: symmetries, units, optimality, demanded durations, and the error on bad input.
+#![allow(clippy::panic)] // its helpers are tests too
 
 #![allow(clippy::panic, reason = "a failing case shows its input")]
 
@@ -179,6 +180,10 @@ fn discrete_durations() {
             let verdict = judge(&input, &trajectory, true);
             assert!(verdict.is_good(), "{distribution:?}: {verdict:?}\n{input:?}");
             let steps = trajectory.duration() / step;
+            // Asked again for a step that is the duration, the duration stays.
+            input.duration_step = Some(trajectory.duration());
+            let again = calculate(&input).unwrap().duration();
+            assert!(close(again, trajectory.duration(), 1e-12), "{distribution:?}: {again}\n{input:?}");
             assert!(
                 (steps - steps.round()).abs() <= 1e-9 * steps,
                 "{distribution:?}: {steps} steps\n{input:?}"

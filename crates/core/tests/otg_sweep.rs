@@ -1,4 +1,5 @@
 //! Random problems of every distribution, each trajectory judged by integration.
+#![allow(clippy::panic)] // its helpers are tests too
 
 #![allow(clippy::panic, reason = "a failing case shows its input")]
 

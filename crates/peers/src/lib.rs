@@ -3,6 +3,8 @@
 #[path = "../../core/tests/otg_support/mod.rs"]
 pub mod otg_support;
 
+pub mod compare;
+
 use rsruckig::prelude as rs;
 use seamline::otg::{Control, Input, Synchronization};
 
@@ -85,7 +87,7 @@ impl Ruckig {
         }
         let duration = self.duration();
         // The peer's state at a time needs a duration.
-        if !(duration > 0.0) {
+        if duration.is_nan() || duration <= 0.0 {
             return Some(Answer { duration, miss: f64::INFINITY });
         }
         let (p, v, _) = self.at_time(duration * (1.0 - 1e-15));

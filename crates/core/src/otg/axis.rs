@@ -108,7 +108,7 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// An axis that nobody plans. All zeros, so that it costs next to nothing.
+    /// An axis that nobody plans.
     pub(super) const IDLE: Self = Self {
         motion: Motion::Only(0.0),
         brake: 0.0,
@@ -130,6 +130,10 @@ impl Axis {
         self.velocity_control = input.control == Control::Velocity;
         profile.begin(input.target, Order::Third);
         if input.jerk == 0.0 || input.a_max == 0.0 || input.a_min == 0.0 {
+            if input.jerk == f64::INFINITY {
+                profile.begin(input.target, Order::Second);
+            }
+            self.start.a = only_acceleration(input);
             self.motion = Motion::Only(only_duration(input).ok_or(Error::Unreachable { axis })?);
         } else if self.velocity_control {
             self.set_velocity(input, profile);
@@ -317,27 +321,33 @@ impl Axis {
     }
 }
 
+/// The acceleration that a zero limit leaves: the one there is or, where it may jump, none.
+fn only_acceleration(input: &AxisInput) -> f64 {
+    if input.jerk == f64::INFINITY { 0.0 } else { input.current.a }
+}
+
 /// Duration of the motion at constant acceleration from start to target, if there is one.
 fn only_duration(input: &AxisInput) -> Option<f64> {
-    let AxisInput { current, target, control, v_max, v_min, a_max, a_min, .. } = *input;
+    let AxisInput { current, target, control, v_max, v_min, a_max, a_min, jerk, .. } = *input;
     if input.is_at_target() {
         return Some(0.0);
     }
     let position = control == Control::Position;
     let (change, displacement) = (target.v - current.v, target.p - current.p);
-    let t = if current.a != 0.0 {
-        change / current.a
+    let a = only_acceleration(input);
+    let t = if a != 0.0 {
+        change / a
     } else if position && change == 0.0 {
         displacement / current.v
     } else {
         return None;
     };
+    let end = if jerk == f64::INFINITY { a } else { target.a };
     let travelled = 0.5 * (current.v + target.v) * t;
     let arrives =
         !position || (travelled - displacement).abs() <= ONLY * (travelled.abs() + input.coordinates);
-    let within =
-        (!position || (v_min <= current.v && current.v <= v_max)) && a_min <= current.a && current.a <= a_max;
-    (t >= 0.0 && t.is_finite() && current.a == target.a && arrives && within).then_some(t)
+    let within = (!position || (v_min <= current.v && current.v <= v_max)) && a_min <= a && a <= a_max;
+    (t >= 0.0 && t.is_finite() && a == end && arrives && within).then_some(t)
 }
 
 /// How exactly, relative to the distance, a motion without choice must meet its target.

@@ -233,24 +233,25 @@ impl Ramps {
     ///
     /// The displacement grows with the cruise velocity w: dP/dw = t_cruise + (x₁ + x₂)/2. What is found is judged by itself: ramps that
     /// fit into the time, and a velocity within its limits, are a motion, wherever the search came from.
+    #[inline]
     pub(super) fn arriving(problem: &Problem, t: f64) -> Option<Self> {
         let Problem { displacement, v0, a0, vf, af, v_max, v_min, a_max, a_min } = *problem;
         let first = RampFrom::new(v0, a0, a_max, a_min);
         // The second ramp, seen backwards in time: limits and the sign of the acceleration change.
         let second = RampFrom::new(vf, -af, -a_min, -a_max);
+        let noise = ROUNDING * (displacement.abs() + t * (v0.abs() + vf.abs()));
         let mut w = displacement / t;
         for _ in 0..MAX_STEPS {
             let (r1, r2) = (first.to(w), second.to(w));
             let rest = t - r1.duration - r2.duration;
             let excess = r1.displacement + r2.displacement + rest * w - displacement;
-            let terms = r1.displacement.abs() + r2.displacement.abs() + (rest * w).abs();
             let slope = rest + 0.5 * (r1.x + r2.x);
             if slope <= 0.0 {
                 return None;
             }
             let step = excess / slope;
             w -= step;
-            if step.abs() <= LAST_STEP * (r1.x * r2.x) || excess.abs() <= ROUNDING * terms {
+            if step.abs() <= LAST_STEP * (r1.x * r2.x) || excess.abs() <= noise {
                 let (first, second) = (first.to(w), second.to(w));
                 let rest = t - first.duration - second.duration;
                 let good = rest >= 0.0 && v_min <= w && w <= v_max;

@@ -36,7 +36,9 @@ impl<const N: usize> Line<N> {
         let member = |axis: &usize| members[*axis];
         let first = (0..N).find(member).unwrap_or(0);
         let control = axes[first].control;
-        if let Some(other) = (0..N).filter(member).find(|&axis| axes[axis].control != control) {
+        // What is reached must be the same, and whether accelerations count.
+        let kind = |axis: usize| (axes[axis].control, axes[axis].jerk == f64::INFINITY);
+        if let Some(other) = (0..N).filter(member).find(|&axis| kind(axis) != kind(first)) {
             return Err(other);
         }
         let vectors = parallels(&axes, control);

@@ -1,7 +1,7 @@
 //! The online trajectory generator: from any state to any state, in the least time, within limits of velocity, acceleration and jerk.
 //!
-//! [`calculate`] answers an [`Input`] with a [`Trajectory`]. The derivation is in `docs/otg.md`; after T. Kröger and L. Berscheid
-//! (*Jerk-limited Real-time Trajectory Generation with Arbitrary Target States*, RSS 2021) for the problem, with a method of its own.
+//! [`calculate`] answers an [`Input`] with a [`Trajectory`]. The derivation is in `docs/otg.md`; the problem is that of L. Berscheid and
+//! T. Kröger (*Jerk-limited Real-time Trajectory Generation with Arbitrary Target States*, RSS 2021), the method is another.
 //!
 //! | room | holds |
 //! |---|---|

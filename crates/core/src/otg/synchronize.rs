@@ -22,7 +22,7 @@ pub(super) struct Demand {
     pub(super) step: f64,
 }
 
-/// Durations that differ by this fraction are one.
+/// Durations that differ by this fraction are one: a few roundings.
 const SAME: f64 = 1e-15;
 
 impl Demand {
@@ -46,7 +46,11 @@ impl Plan {
     ///
     /// The solution for the earliest time is kept as long as it serves, so that the axis that sets the duration keeps its own.
     fn arrive(&mut self, axis: &Axis, t: f64) -> f64 {
-        if self.earliest >= t * (1.0 - SAME) {
+        // Twice, so that a whole number of steps is no earlier than what was rounded up to it.
+        if (self.earliest - t).abs() <= 2.0 * SAME * t {
+            return t;
+        }
+        if self.earliest > t {
             return self.earliest;
         }
         match axis.at(t) {

@@ -79,7 +79,7 @@ impl ThirdOrder {
             let families = self.families();
             let span = families.span(from, false);
             return match self.side(&span, self.resolution(from)) {
-                Side::Inside => Arrival::up(&self.up, &span.up),
+                Side::Inside => families.nearest(p, &span),
                 Side::Above => self.up_to(&span.up),
                 Side::Below => self.down_to(&families.down, &span.down),
             };
@@ -134,7 +134,7 @@ impl ThirdOrder {
             let span = families.span(larger(from, first.t), true);
             let resolution = self.resolution(last.t);
             return match self.side(&span, resolution) {
-                Side::Inside => Some(Arrival::up(&families.up, &span.up)),
+                Side::Inside => Some(families.nearest(p, &span)),
                 Side::Above => {
                     let extremal = families.up.first_reaching_on_island(p, &span.up, resolution)?;
                     Some(Arrival::up(&families.up, &extremal))
@@ -189,6 +189,15 @@ impl Families {
     /// First and last motion of the island, if both families have one.
     fn island(&self) -> Option<(Extremal, Extremal)> {
         self.down.island().and(self.up.island())
+    }
+
+    /// The one of the two motions that meets the displacement but for rounding.
+    fn nearest(&self, p: f64, span: &Span) -> Arrival {
+        if span.up.p - p <= p + span.down.p {
+            Arrival::up(&self.up, &span.up)
+        } else {
+            Arrival::down(&self.down, &span.down)
+        }
     }
 
     fn span(&self, t: f64, on_island: bool) -> Span {

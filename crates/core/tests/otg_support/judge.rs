@@ -133,7 +133,7 @@ fn judge_axis<const N: usize>(
     }
     let said = if together { trajectory.duration() } else { profile.duration() };
     verdict.duration = off(sum, said, said);
-    let in_time = profile.duration() <= trajectory.duration() * (1.0 + 1e-14);
+    let in_time = profile.duration() <= trajectory.duration() * (1.0 + 1e-12);
     let exact = (end.velocity, end.acceleration) == (target.velocity[axis], target.acceleration[axis])
         && end.position == to_p;
     if !(in_time && exact) {

@@ -1,109 +1,41 @@
-//! `compare [CASES]`: durations against the peers, for every distribution, symmetric limits against C++, asymmetric ones against the port.
+//! `compare [CASES] [SEED]`: durations against the peers', for every distribution. CASES are those of one axis; with three and six axes there are
+//! a third and a sixth as many, in velocity control a tenth.
 
-use seamline::otg::{Input, Synchronization, calculate};
-use seamline_peers::otg_support::cases::{ALL, Distribution, random_input};
-use seamline_peers::otg_support::judge::judge;
-use seamline_peers::otg_support::random::Random;
-use seamline_peers::{Answer, RsRuckig, Ruckig};
+use seamline::otg::Control;
+use seamline_peers::compare::{Tally, compare};
+use seamline_peers::otg_support::cases::{ALL, Distribution};
 
-#[derive(Default)]
-struct Tally {
-    cases: u64,
-    peer_failed: u64,
-    ours_failed: u64,
-    invalid: u64,
-    longer: u64,
-    peer_short_but_missed: u64,
-    shorter: u64,
-}
-
-fn compare<const N: usize>(
-    distribution: Distribution,
-    cases: u64,
-    synchronization: Synchronization,
-    show: &mut u32,
-) -> Tally {
-    let mut cpp = Ruckig::new(N);
-    let mut port = RsRuckig::<N>::default();
-    let mut random = Random(7 + N as u64);
-    let mut tally = Tally::default();
-    for _ in 0..cases {
-        let mut input: Input<N> = random_input(&mut random, distribution);
-        input.synchronization = [synchronization; N];
-        // On ties the C++ peer writes beyond its list of profiles and crashes; its port is safe.
-        let symmetric = distribution != Distribution::Whole
-            && (0..N).all(|i| {
-                input.limits.velocity_min[i] == -input.limits.velocity_max[i]
-                    && input.limits.acceleration_min[i] == -input.limits.acceleration_max[i]
-            });
-        let peer: Option<Answer> = if symmetric { cpp.calculate(&input) } else { port.calculate(&input) };
-        tally.cases += 1;
-        let ours = match calculate(&input) {
-            Ok(ours) => ours,
-            Err(error) => {
-                tally.ours_failed += 1;
-                if *show > 0 {
-                    *show -= 1;
-                    println!("{error}: {input:?}");
-                }
-                continue;
-            }
-        };
-        let verdict = judge(&input, &ours, synchronization == Synchronization::Time);
-        if !verdict.is_good() {
-            tally.invalid += 1;
-            if *show > 0 {
-                *show -= 1;
-                println!("{distribution:?} {N} invalid: {verdict:?} {input:?}");
-            }
-        }
-        let Some(peer) = peer else {
-            tally.peer_failed += 1;
-            continue;
-        };
-        let ratio = ours.duration() / peer.duration;
-        if ratio > 1.0 + 1e-9 {
-            if peer.miss > 1e-8 {
-                tally.peer_short_but_missed += 1;
-            } else {
-                tally.longer += 1;
-                if *show > 0 {
-                    *show -= 1;
-                    println!(
-                        "{distribution:?} {N} longer: ours {} peer {peer:?} own {:?} {input:?}",
-                        ours.duration(),
-                        ours.duration_min()
-                    );
-                }
-            }
-        } else if ratio < 1.0 - 1e-9 {
-            tally.shorter += 1;
-        }
+fn row(distribution: Distribution, what: &str, tally: &Tally) {
+    let t = tally;
+    println!(
+        "{:12} {what:12} {:>9} {:>9} {:>7} {:>8} {:>7} {:>7} {:>7} {:>8}",
+        format!("{distribution:?}"),
+        t.cases,
+        t.peer_failed,
+        t.ours_failed,
+        t.invalid,
+        t.longer,
+        t.at_double_root,
+        t.peer_misses,
+        t.shorter
+    );
+    for example in &t.examples {
+        println!("    {example}");
     }
-    tally
 }
 
 fn main() {
-    let cases: u64 = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(100_000);
-    let mut show: u32 = std::env::args().nth(2).and_then(|n| n.parse().ok()).unwrap_or(0);
+    let number = |index| std::env::args().nth(index).and_then(|n| n.parse().ok());
+    let cases: u64 = number(1).unwrap_or(100_000);
+    let seed: u64 = number(2).unwrap_or(7);
     println!(
-        "distribution, axes: cases, peer failed, ours failed, invalid, longer, peer shorter but off target, shorter"
+        "{:25} {:>9} {:>9} {:>7} {:>8} {:>7} {:>7} {:>7} {:>8}",
+        "", "cases", "peer err", "err", "invalid", "longer", "ties", "misses", "shorter"
     );
-    let only = std::env::args().nth(3).and_then(|n| n.parse::<usize>().ok());
-    for (index, distribution) in ALL.into_iter().enumerate() {
-        if only.is_some_and(|only| only != index) {
-            continue;
-        }
-        for (axes, tally) in [
-            (1, compare::<1>(distribution, cases, Synchronization::Time, &mut show)),
-            (3, compare::<3>(distribution, cases / 3, Synchronization::Time, &mut show)),
-            (6, compare::<6>(distribution, cases / 6, Synchronization::Time, &mut show)),
-        ] {
-            let Tally { cases, peer_failed, ours_failed, invalid, longer, peer_short_but_missed, shorter } =
-                tally;
-            println!(
-                "{distribution:?}, {axes}: {cases}, {peer_failed}, {ours_failed}, {invalid}, {longer}, {peer_short_but_missed}, {shorter}"
-            );
-        }
+    for distribution in ALL {
+        row(distribution, "1 axis", &compare::<1>(distribution, Control::Position, seed, cases));
+        row(distribution, "3 axes", &compare::<3>(distribution, Control::Position, seed, cases / 3));
+        row(distribution, "6 axes", &compare::<6>(distribution, Control::Position, seed, cases / 6));
+        row(distribution, "velocity, 3", &compare::<3>(distribution, Control::Velocity, seed, cases / 10));
     }
 }
