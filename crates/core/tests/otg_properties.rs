@@ -1,8 +1,6 @@
 //! What must hold whatever the problem: symmetries, units, optimality, demanded durations, and the error on bad input.
 #![allow(clippy::panic)] // its helpers are tests too
 
-#![allow(clippy::panic, reason = "a failing case shows its input")]
-
 mod otg_support;
 
 use otg_support::cases::{self, Distribution, mirrored, random_input, reversed};

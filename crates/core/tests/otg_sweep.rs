@@ -1,8 +1,6 @@
 //! Random problems of every distribution, each trajectory judged by integration.
 #![allow(clippy::panic)] // its helpers are tests too
 
-#![allow(clippy::panic, reason = "a failing case shows its input")]
-
 mod otg_support;
 
 use otg_support::cases::{self, Distribution, random_input};
