@@ -255,3 +255,36 @@ fn missing_files_are_named() {
         seamline(&["run", "examples/jobs/fillet.JBI", "--cell", "nowhere.toml", "--out", text(&out)]);
     assert_refused(&output, &out, "nowhere.toml", "nowhere.toml");
 }
+
+/// One job on every arm that comes with a cell: a joint move, a line and an arc, in pulses (1,000 a degree).
+#[test]
+fn a_job_runs_on_every_six_axis_arm() {
+    let folder = folder("arms");
+    let arms = [
+        ("irb2400", ["0,0,0,0,45000,0", "15000,5000,-5000,5000,50000,5000", "20000,15000,-5000,0,40000,0"]),
+        (
+            "ur5e",
+            [
+                "0,-90000,90000,-90000,-90000,0",
+                "15000,-80000,95000,-100000,-85000,10000",
+                "25000,-95000,100000,-95000,-90000,0",
+            ],
+        ),
+    ];
+    for (arm, [first, second, third]) in arms {
+        let job = format!(
+            "/JOB\n//NAME ARM\n//POS\n///NPOS 3,0,0,0,0,0\n///TOOL 0\n///POSTYPE PULSE\n///PULSE\n\
+             C00000={first}\nC00001={second}\nC00002={third}\n//INST\n///DATE 2026/01/15 09:00\n///ATTR SC,RW\n\
+             ///GROUP1 RB1\nNOP\nMOVJ C00000 VJ=50.00 PL=0\nMOVL C00001 V=200.0 PL=0\nMOVC C00001 V=100.0 PL=0\n\
+             MOVC C00002 V=100.0 PL=0\nMOVC C00000 V=100.0 PL=0\nMOVJ C00002 VJ=100.00 PL=0\nEND\n"
+        );
+        let (path, out) = (folder.join(format!("{arm}.JBI")), folder.join(arm));
+        fs::write(&path, job).expect("a job file");
+        let cell = format!("examples/cells/{arm}.toml");
+        let output = seamline(&["run", text(&path), "--cell", &cell, "--out", text(&out)]);
+        assert!(output.status.success(), "{arm}: {}", String::from_utf8_lossy(&output.stderr));
+        let summary = fs::read_to_string(out.join("summary.json")).expect("a summary");
+        let summary: Value = serde_json::from_str(&summary).expect("valid JSON");
+        assert_eq!(summary["verdict"], "ok", "{arm}: {summary}");
+    }
+}

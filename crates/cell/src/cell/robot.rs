@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+pub use seamline::kinematics::{DhConvention, OpwParameters};
+
 use super::error::CellError;
 use super::section::{Section, Unit};
 
@@ -24,7 +26,9 @@ pub struct Robot {
 pub enum RobotModel {
     /// One of the arms that come with the program.
     BuiltIn(BuiltInRobot),
-    /// A six-axis arm with spherical wrist, by its dimensions.
+    /// A six-axis arm with spherical wrist, by its dimensions after Brandstötter, Angerer & Hofbaur, *An analytical
+    /// solution of the inverse kinematics problem of industrial serial manipulators with an ortho-parallel basis and a
+    /// spherical wrist* (2014).
     Opw(OpwParameters),
     /// A serial chain by its Denavit–Hartenberg table.
     Dh(DhTable),
@@ -56,30 +60,6 @@ impl BuiltInRobot {
     }
 }
 
-/// Dimensions after Brandstötter, Angerer & Hofbaur, *An analytical solution of the inverse kinematics problem of
-/// industrial serial manipulators with an ortho-parallel basis and a spherical wrist* (2014). Metres, radians.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OpwParameters {
-    /// From axis 1 to axis 2, along x.
-    pub a1: f64,
-    /// From axis 3 to the forearm's axis (negative: the forearm lies above axis 3).
-    pub a2: f64,
-    /// Lateral offset of the arm.
-    pub b: f64,
-    /// Height of axis 2 above the base.
-    pub c1: f64,
-    /// Upper arm, axis 2 to axis 3.
-    pub c2: f64,
-    /// Forearm, axis 3 to the wrist centre.
-    pub c3: f64,
-    /// Wrist centre to flange.
-    pub c4: f64,
-    /// Offset of each joint: the paper's angle is θ = sign·q − offset (as in ROS), with θ = 0 the arm stretched upwards.
-    pub offsets: [f64; 6],
-    /// Turning sense of each joint against the paper's, +1 or −1.
-    pub signs: [f64; 6],
-}
-
 /// A Denavit–Hartenberg table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DhTable {
@@ -87,15 +67,6 @@ pub struct DhTable {
     pub convention: DhConvention,
     /// One row a joint, from the base. The joint's own coordinate adds to `theta` (revolute) or `d` (prismatic).
     pub rows: Vec<DhRow>,
-}
-
-/// Order of the four elementary motions of a row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DhConvention {
-    /// Rz(θ)·Tz(d)·Tx(a)·Rx(α), frame at the link's far end.
-    Standard,
-    /// Rx(α)·Tx(a)·Rz(θ)·Tz(d), after Craig: frame at the link's near end.
-    Modified,
 }
 
 /// One row of a Denavit–Hartenberg table. Metres, radians.

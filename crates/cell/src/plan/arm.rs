@@ -2,14 +2,13 @@
 
 use seamline::geometry::Pose;
 use seamline::kinematics::{
-    Configuration, InverseError, JointLimits, Kinematics, ModelError, OpwParameters, SphericalWristArm,
-    models,
+    ClosedForm, Configuration, InverseError, InverseMethod, Kinematics, SixAxisArm, SphericalWristArm,
 };
 use seamline::safety::MotionLimits;
-use thiserror::Error;
 
-use crate::cell::{BuiltInRobot, Cell, Robot, RobotModel};
+use crate::cell::{Cell, Robot};
 use crate::job;
+use crate::robot::{ArmDescription, ArmError};
 
 /// What planning asks of an arm beyond what the cycle does.
 pub trait PlanningArm<const N: usize>: Kinematics<N> + Clone {
@@ -35,7 +34,7 @@ pub trait PlanningArm<const N: usize>: Kinematics<N> + Clone {
     fn configuration(&self, q: &[f64; N]) -> job::Configuration;
 }
 
-impl PlanningArm<6> for SphericalWristArm {
+impl PlanningArm<6> for SixAxisArm {
     fn in_configuration(
         &self,
         base_from_flange: &Pose,
@@ -45,15 +44,19 @@ impl PlanningArm<6> for SphericalWristArm {
         let c = configuration;
         let digits =
             [c.no_flip, c.lower_arm, c.rear, c.r_beyond_180, c.t_beyond_180, c.s_beyond_180].map(u8::from);
-        match Configuration::from_rconf(digits) {
-            Some(configuration) => self.inverse_in_configuration(base_from_flange, &configuration, reference),
-            None => self.inverse_nearest(base_from_flange, reference),
+        match (spherical_wrist(self), Configuration::from_rconf(digits)) {
+            (Some(arm), Some(configuration)) => {
+                arm.inverse_in_configuration(base_from_flange, &configuration, reference)
+            }
+            // The flags name the branches of a spherical wrist; another arm goes to the nearest joints.
+            _ => self.inverse_nearest(base_from_flange, reference),
         }
     }
 
     fn same_branch(&self, base_from_flange: &Pose, seed: &[f64; 6]) -> Result<[f64; 6], InverseError> {
-        let posture = self.posture(seed);
-        let all = self.inverse_within_limits(base_from_flange, seed)?;
+        let Some(arm) = spherical_wrist(self) else { return self.inverse_nearest(base_from_flange, seed) };
+        let posture = arm.posture(seed);
+        let all = arm.inverse_within_limits(base_from_flange, seed)?;
         let same =
             all.as_slice().iter().find(|solution| solution.posture == posture || solution.at_wrist_pole);
         // The branch ends here, or leaves the limits: the nearest joints show by how much the arm would have to jump.
@@ -61,8 +64,17 @@ impl PlanningArm<6> for SphericalWristArm {
     }
 
     fn configuration(&self, q: &[f64; 6]) -> job::Configuration {
-        let flags = SphericalWristArm::configuration(self, q).to_rconf().map(|digit| digit == 1);
+        let Some(arm) = spherical_wrist(self) else { return job::Configuration::default() };
+        let flags = arm.configuration(q).to_rconf().map(|digit| digit == 1);
         job::Configuration::from_flags(&flags)
+    }
+}
+
+/// The closed form whose branches have the names of `RCONF`.
+fn spherical_wrist(arm: &SixAxisArm) -> Option<&SphericalWristArm> {
+    match arm.method() {
+        InverseMethod::Exact(ClosedForm::SphericalWrist(arm)) => Some(arm),
+        _ => None,
     }
 }
 
@@ -85,52 +97,15 @@ pub struct Arm<const N: usize, K> {
     pub home: [f64; N],
 }
 
-/// Why a cell's arm cannot be planned for.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum ArmError {
-    /// The model is known to the cell file and not to the planner.
-    #[error("robot.model: {model} is not supported by jobs yet; expected \"ar2010\", \"irb2400\" or \"opw\"")]
-    Unsupported {
-        /// The model.
-        model: &'static str,
-    },
-    /// The numbers are no arm.
-    #[error("robot: the dimensions are no arm: {0:?}")]
-    Model(ModelError),
-    /// The joints do not fit the model.
-    #[error("robot.joint: {found} joints, expected {expected}")]
-    Joints {
-        /// Joints of the cell.
-        found: usize,
-        /// Joints of the model.
-        expected: usize,
-    },
-}
-
-impl Arm<6, SphericalWristArm> {
+impl Arm<6, SixAxisArm> {
     /// The arm of a cell.
     ///
     /// # Errors
-    /// [`ArmError`] where the cell's robot is not a six-axis arm with spherical wrist.
+    /// [`ArmError`] where the cell's robot is no six-axis arm.
     pub fn from_cell(cell: &Cell) -> Result<Self, ArmError> {
         let robot = &cell.robot;
-        let geometry = match &robot.model {
-            RobotModel::BuiltIn(BuiltInRobot::Ar2010) => *models::ar2010().geometry(),
-            RobotModel::BuiltIn(BuiltInRobot::Irb2400) => *models::irb2400().geometry(),
-            RobotModel::Opw(p) => {
-                let crate::cell::OpwParameters { a1, a2, b, c1, c2, c3, c4, offsets, signs } = *p;
-                OpwParameters { a1, a2, b, c1, c2, c3, c4, offsets, signs }.geometry()
-            }
-            RobotModel::BuiltIn(BuiltInRobot::Ur5e) => return Err(ArmError::Unsupported { model: "ur5e" }),
-            RobotModel::BuiltIn(BuiltInRobot::Scara600) => {
-                return Err(ArmError::Unsupported { model: "scara600" });
-            }
-            RobotModel::Dh(_) => return Err(ArmError::Unsupported { model: "dh" }),
-            RobotModel::Urdf(_) => return Err(ArmError::Unsupported { model: "urdf" }),
-        };
+        let kinematics = ArmDescription::from_cell(robot)?.six_axis()?;
         let limits = motion_limits(robot)?;
-        let model_limits = JointLimits::try_new(limits.position, limits.velocity).map_err(ArmError::Model)?;
-        let kinematics = SphericalWristArm::try_new(geometry, model_limits).map_err(ArmError::Model)?;
         Ok(Self {
             name: robot.name.clone(),
             joint_names: robot.joints.iter().map(|joint| joint.name.clone()).collect(),
@@ -149,7 +124,7 @@ fn joints<T: Copy, const N: usize>(
     of: impl Fn(&crate::cell::Joint) -> T,
 ) -> Result<[T; N], ArmError> {
     let values: Vec<T> = robot.joints.iter().map(of).collect();
-    values.try_into().map_err(|_| ArmError::Joints { found: robot.joints.len(), expected: N })
+    values.try_into().map_err(|_| ArmError::JointCount { found: robot.joints.len(), expected: N })
 }
 
 fn motion_limits<const N: usize>(robot: &Robot) -> Result<MotionLimits<N>, ArmError> {

@@ -188,7 +188,7 @@ impl<const N: usize, K: PlanningArm<N>> JointPath<N> for PathJoints<'_, N, K> {
 #[cfg(test)]
 mod tests {
     use seamline::geometry::{Rotation, Vector3};
-    use seamline::kinematics::{Kinematics, models};
+    use seamline::kinematics::{Kinematics, SixAxisArm, models};
 
     use super::*;
 
@@ -196,7 +196,7 @@ mod tests {
     /// less than a step from place to place, keep their branch beside the pole and change it only on it.
     #[test]
     fn a_line_past_the_wrist_pole_keeps_its_branch() {
-        let arm = models::ar2010();
+        let arm = SixAxisArm::from(models::ar2010());
         for distance in [0.1, 1e-2, 1e-3, 1e-4, 1e-5, 0.0] {
             // The flange tilts by the path's own turning, so that q5 passes `distance` in the middle.
             let middle = arm.forward(&[0.1, 0.2, 0.1, 0.0, distance, 0.3]);

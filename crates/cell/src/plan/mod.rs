@@ -15,7 +15,7 @@ pub mod timing;
 mod tool_path;
 mod workspace;
 
-pub use arm::{Arm, ArmError, PlanningArm};
+pub use arm::{Arm, PlanningArm};
 pub use error::{Place, PlanError, Problem};
 pub use joint_path::{FollowError, PathJoints};
 pub use planner::{Planned, Planner};

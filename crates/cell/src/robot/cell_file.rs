@@ -1,9 +1,9 @@
 //! The arm of a cell file: the model from wherever the file says, the limits from the file.
 
-use seamline::kinematics::{self as core, DhRow, JointKind};
+use seamline::kinematics::{DhRow, JointKind};
 
 use super::{ArmDescription, ArmError, Chain, Joint, Structure};
-use crate::cell::{self, DhTable, OpwParameters, Robot, RobotModel};
+use crate::cell::{self, DhTable, Robot, RobotModel};
 
 impl ArmDescription {
     /// The arm of a cell, within the cell's soft limits.
@@ -14,11 +14,7 @@ impl ArmDescription {
         let structure = match &robot.model {
             RobotModel::BuiltIn(built_in) => Self::built_in(*built_in).fitting(robot)?,
             RobotModel::Urdf(source) => Self::from_urdf(source)?.fitting(robot)?,
-            RobotModel::Opw(p) => {
-                let OpwParameters { a1, a2, b, c1, c2, c3, c4, offsets, signs } = *p;
-                let parameters = core::OpwParameters { a1, a2, b, c1, c2, c3, c4, offsets, signs };
-                Structure::SphericalWrist(parameters.geometry())
-            }
+            RobotModel::Opw(parameters) => Structure::SphericalWrist(parameters.geometry()),
             RobotModel::Dh(table) => Structure::Chain(dh_chain(table, robot)),
         };
         let joints = robot.joints.iter().map(joint).collect();
@@ -47,15 +43,11 @@ impl ArmDescription {
 }
 
 fn dh_chain(table: &DhTable, robot: &Robot) -> Chain {
-    let convention = match table.convention {
-        cell::DhConvention::Standard => core::DhConvention::Standard,
-        cell::DhConvention::Modified => core::DhConvention::Modified,
-    };
     let row = |(row, joint): (&cell::DhRow, &cell::Joint)| {
         let cell::DhRow { a, alpha, d, theta } = *row;
         DhRow { a, alpha, d, theta, kind: core_kind(joint) }
     };
-    Chain::Dh { convention, rows: table.rows.iter().zip(&robot.joints).map(row).collect() }
+    Chain::Dh { convention: table.convention, rows: table.rows.iter().zip(&robot.joints).map(row).collect() }
 }
 
 fn joint(joint: &cell::Joint) -> Joint {

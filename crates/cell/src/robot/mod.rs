@@ -104,6 +104,20 @@ impl ArmDescription {
         }
     }
 
+    /// The arm, if it has six axes, with the best inverse that its structure allows.
+    ///
+    /// # Errors
+    /// [`ArmError`] where the numbers are no arm, or the arm has another number of joints.
+    pub fn six_axis(&self) -> Result<SixAxisArm, ArmError> {
+        match &self.structure {
+            Structure::SphericalWrist(geometry) => {
+                Ok(SphericalWristArm::try_new(*geometry, self.limits()?)?.into())
+            }
+            Structure::Scara(_) => Err(ArmError::JointCount { found: self.joints.len(), expected: 6 }),
+            Structure::Chain(chain) => Ok(SixAxisArm::from_chain(self.build(chain)?)),
+        }
+    }
+
     fn with_chain<T: ArmTask>(&self, chain: &Chain, task: T) -> Result<T::Output, ArmError> {
         match self.joints.len() {
             1 => Ok(task.run(&self.build::<1>(chain)?, Inverse::Numeric)),
@@ -112,7 +126,7 @@ impl ArmDescription {
             4 => Ok(task.run(&self.build::<4>(chain)?, Inverse::Numeric)),
             5 => Ok(task.run(&self.build::<5>(chain)?, Inverse::Numeric)),
             6 => {
-                let arm = SixAxisArm::from_chain(self.build(chain)?);
+                let arm = self.six_axis()?;
                 let inverse = match arm.method() {
                     InverseMethod::Exact(_) => Inverse::ClosedForm,
                     InverseMethod::Polished(_) => Inverse::Polished,

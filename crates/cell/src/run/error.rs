@@ -6,7 +6,8 @@ use std::io;
 use thiserror::Error;
 
 use crate::job::JobError;
-use crate::plan::{ArmError, Problem};
+use crate::plan::Problem;
+use crate::robot::ArmError;
 
 /// A place in a job file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,7 +30,7 @@ impl fmt::Display for Place {
 #[derive(Debug, Error)]
 pub enum RunError {
     /// The cell's arm cannot be used.
-    #[error("{0}")]
+    #[error("robot: {0}")]
     Arm(#[from] ArmError),
     /// The cell's simulated drives cannot be set up.
     #[error("simulation: {0}")]

@@ -8,7 +8,7 @@ use seamline::control::{
     Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, NoClock, ServoModel,
 };
 use seamline::drive::Drive;
-use seamline::kinematics::SphericalWristArm;
+use seamline::kinematics::SixAxisArm;
 use seamline::safety::WorkspaceBox;
 use seamline_cell::cell::Cell;
 use seamline_cell::job::{
@@ -18,7 +18,7 @@ use seamline_cell::job::{
 use seamline_cell::plan::{Arm, Planner};
 use seamline_cell::sim::SimulatedDrive;
 
-pub(crate) type Ar2010 = Arm<6, SphericalWristArm>;
+pub(crate) type Ar2010 = Arm<6, SixAxisArm>;
 
 /// Flange pose of the default robot by the product of exponentials, from the makers' data alone: axes at zero z, y, −y,
 /// −x, −y, −x through the points named; flange at zero at (1.332, 0, 0.960) with z along +x and x along +z.
@@ -101,7 +101,7 @@ pub(crate) fn config(cell: &Cell, arm: &Ar2010) -> CycleConfig<6> {
 
 /// A controller with its simulated drives.
 pub(crate) struct Bench {
-    pub(crate) cycle: Cycle<6, SphericalWristArm>,
+    pub(crate) cycle: Cycle<6, SixAxisArm>,
     pub(crate) drive: SimulatedDrive<6>,
     pub(crate) queue: Queue,
     pub(crate) input: CycleInput<6>,
