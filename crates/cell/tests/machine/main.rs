@@ -13,3 +13,4 @@ mod cycle;
 mod faults;
 mod no_alloc;
 mod pause;
+mod recorded;
