@@ -7,9 +7,10 @@ use super::timing::PathLimits;
 use crate::cell::CartesianLimits;
 use crate::job::{Move, Speed};
 
-/// Least time from rest to the programmed speed, in seconds: at weld speeds the acceleration limits of the cell would be
-/// reached and left within a few cycles, for no gain in time.
-const RAMP: f64 = 0.04;
+/// At weld speeds the acceleration limits of the cell would be reached and left within a few cycles, for no gain in
+/// time. So the acceleration is at most what gains the programmed speed in `GAIN`, and builds up in `BUILD_UP` (seconds).
+const GAIN: f64 = 0.02;
+const BUILD_UP: f64 = 0.01;
 
 /// The tag that a speed is written with.
 pub(super) fn tag(speed: &Speed) -> &'static str {
@@ -49,7 +50,7 @@ pub(super) fn path_limits(path: &Path, r#move: &Move, cell: &CartesianLimits) ->
     let share = r#move.acceleration.min(r#move.deceleration);
     let acceleration = share * permitted(cell.acceleration, cell.rotation_acceleration);
     let jerk = share * permitted(cell.jerk, cell.rotation_jerk);
-    // A ramp of two equal jerk phases in that time has this peak acceleration and this jerk.
-    let (gentle, gentle_jerk) = (2.0 * speed / RAMP, 4.0 * speed / (RAMP * RAMP));
+    let gentle = speed / GAIN;
+    let gentle_jerk = gentle / BUILD_UP;
     Ok(PathLimits { speed, acceleration: acceleration.min(gentle), jerk: jerk.min(gentle_jerk) })
 }

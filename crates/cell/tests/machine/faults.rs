@@ -199,7 +199,7 @@ fn a_starved_motion_halts_within_the_joint_limits() {
     run.assert_within_limits(&arm, cell.cycle.period);
 }
 
-/// The first 100 ms of a line, in pieces whose borders fall on those of its S-curve (20 ms a jerk phase): it ends in
+/// The first 100 ms of a line, in pieces whose borders fall on those of its S-curve (10 ms a phase): it ends in
 /// full motion.
 fn beginning(motion: &PathMotion) -> PathMotion {
     const STEP: f64 = 2.5e-3;
