@@ -1,7 +1,8 @@
 //! The check before any motion: the whole job, step by step, planned and thrown away.
 
+use super::announcement::announcement;
 use super::error::{Place, RunError};
-use super::walk::Walk;
+use super::walk::{WAIT_MAX, Walk};
 use crate::cell::{Cell, UnmetWait};
 use crate::job::{Action, JobSet, Step};
 use crate::plan::{Arm, PlanningArm};
@@ -11,8 +12,6 @@ const DURATION_MAX: f64 = 4.0 * 3600.0;
 const STEPS_MAX: usize = 100_000;
 /// How far apart the instants are at which a WAIT is tried against the scripted inputs, in seconds.
 const WAIT_STEP: f64 = 0.01;
-/// How long a WAIT without limit is tried, in seconds.
-pub(super) const WAIT_MAX: f64 = 3600.0;
 
 /// What a check found.
 #[derive(Debug)]
@@ -104,7 +103,7 @@ impl CheckReport {
                 for notice in &planned.notices {
                     self.note(walk, step, notice);
                 }
-                if let Some(text) = super::feeder::announcement(&step.action) {
+                if let Some(text) = announcement(&step.action) {
                     self.note(walk, step, &text);
                 }
             }

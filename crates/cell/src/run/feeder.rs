@@ -5,28 +5,13 @@ use std::collections::VecDeque;
 use rtrb::Producer;
 use seamline::control::Command;
 
-use super::check::WAIT_MAX;
+use super::announcement::{Announcement, announcement};
 use super::error::RunError;
-use super::walk::Walk;
+use super::walk::{WAIT_MAX, Walk};
 use crate::cell::UnmetWait;
-use crate::job::{Action, Condition, Output, Step};
+use crate::job::{Action, Condition, Step};
 use crate::plan::PlanningArm;
-use crate::record::{Event, EventKind, SegmentInfo};
-
-/// Something to report when the program passes a marker.
-#[derive(Debug, Clone)]
-pub(super) struct Announcement {
-    pub(super) marker: u32,
-    pub(super) line: u32,
-    pub(super) kind: EventKind,
-    pub(super) text: String,
-}
-
-impl Announcement {
-    pub(super) fn event(self, time: f64) -> Event {
-        Event { time, line: self.line, kind: self.kind, text: self.text }
-    }
-}
+use crate::record::{EventKind, SegmentInfo};
 
 /// A WAIT under way.
 #[derive(Debug)]
@@ -188,30 +173,5 @@ impl<'a, const N: usize, K: PlanningArm<N>> Feeder<'a, N, K> {
             Some("WAIT is never met by the scripted inputs: goes on".into()),
         );
         true
-    }
-}
-
-/// What a step says to the operator when the program comes to it.
-pub(super) fn announcement(action: &Action) -> Option<String> {
-    match action {
-        Action::Output(output) => Some(output_text(output)),
-        Action::Message { text } => Some(format!("message: {text}")),
-        Action::Alarm { code, text, subcode, stops } => {
-            let end = if *stops { ": the job ends" } else { "" };
-            Some(format!("alarm {code} [{subcode}] {text}{end}"))
-        }
-        Action::Pause => Some("PAUSE: no operator here, the run goes on at once".into()),
-        Action::Accepted { text, note } => Some(format!("{text}: {note}")),
-        _ => None,
-    }
-}
-
-fn output_text(output: &Output) -> String {
-    match output {
-        Output::Digital { kind, number, value } => format!("{}#({number}) = {value}", kind.name()),
-        Output::Pulse { kind, number, value, seconds } => {
-            format!("{}#({number}) = {value} for {seconds:.2} s", kind.name())
-        }
-        Output::Analog { number, volts } => format!("AO#({number}) = {volts:.2} V"),
     }
 }

@@ -8,6 +8,8 @@
 //! [`check()`] walks the whole job without moving anything; [`run()`] does the same first and refuses a job that would
 //! fail on the way.
 
+mod announcement;
+mod beat;
 mod check;
 mod clock;
 mod error;

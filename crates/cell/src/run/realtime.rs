@@ -12,7 +12,7 @@ use thread_priority::{
     set_thread_priority_and_policy, thread_native_id,
 };
 
-use super::session::{Beat, LoopFigures, SimulatedMachine, start_event};
+use super::beat::{Beat, LoopFigures, SimulatedMachine, start_event};
 use super::supervisor::Supervisor;
 use crate::plan::PlanningArm;
 use crate::record::{SampleSender, TimeHistogram};

@@ -5,9 +5,9 @@ use std::io;
 use rtrb::Producer;
 use seamline::control::{Command, Mode};
 
+use super::beat::Beat;
 use super::faults::describe;
 use super::feeder::Feeder;
-use super::session::Beat;
 use super::walk::Walk;
 use crate::plan::PlanningArm;
 use crate::record::{Event, EventKind, Findings, Recorder, SampleSender};

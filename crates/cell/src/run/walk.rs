@@ -6,6 +6,9 @@ use crate::cell::{Cell, SpeedUnit};
 use crate::job::{Condition, Interpreter, JobSet, LinearSpeedUnit, SignalKind, Step, World};
 use crate::plan::{Arm, PlanError, Planned, Planner, PlanningArm};
 
+/// How long a WAIT without limit is tried, in seconds.
+pub(super) const WAIT_MAX: f64 = 3600.0;
+
 /// A walk through a job.
 #[derive(Debug)]
 pub(super) struct Walk<'a, const N: usize, K> {
