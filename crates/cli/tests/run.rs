@@ -83,6 +83,7 @@ fn check_names_the_slowdown_before_anything_moves() {
     let stdout = String::from_utf8_lossy(&output.stdout);
     assert!(stdout.contains("near_wrist.JBI:23:1: slows from 150.0 to"), "{stdout}");
     assert!(stdout.contains("joint R is at its speed limit"), "{stdout}");
+    assert!(stdout.contains("mm/s could be held all along; it works with the torch tilted by"), "{stdout}");
 }
 
 #[test]

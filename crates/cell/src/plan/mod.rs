@@ -11,6 +11,7 @@ mod joint_path;
 mod planner;
 mod resolve;
 mod speed;
+mod suggest;
 pub mod timing;
 mod tool_path;
 mod workspace;

@@ -2,6 +2,7 @@
 
 use seamline::control::{BLOCK_PIECES, Block, Command, Motion, PathMotion};
 use seamline::geometry::Pose;
+use seamline::kinematics::InverseError;
 use seamline::path::{Measure, Path, TimingPiece};
 
 use super::arm::PlanningArm;
@@ -10,6 +11,7 @@ use super::joint_path::{FollowError, PathJoints};
 use super::planner::{Planned, Planner};
 use super::resolve::Goal;
 use super::speed;
+use super::suggest::Trouble;
 use super::timing::{Order, PathLimits, Slowdown, Timing, TimingError, TimingKind, TimingLimits, time_path};
 use super::workspace;
 use crate::cell::Cell;
@@ -59,7 +61,7 @@ pub(super) fn increment(from: &Pose, target: &Target, frame: Frame, cell: &Cell)
 
 /// A move that is stretched by more than this is refused.
 const STRETCH_MAX: f64 = 50.0;
-const NO_USEFUL_SPEED: &str = "the path passes so near to a singularity that no useful speed is left; tilt the torch a few degrees, or use MOVJ";
+const NO_USEFUL_SPEED: &str = "the path passes so near to a singularity that no useful speed is left";
 
 impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     /// A move of the tool centre point along a path, from rest to rest.
@@ -85,25 +87,22 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             return Ok(Planned { segment: Some(info), ..Planned::default() });
         }
         workspace::check_path(path, &self.cell.safety)?;
+        let trouble = Trouble {
+            kinematics: &self.arm.kinematics,
+            path,
+            flange_from_tcp: &self.tool.flange_from_tcp,
+            start: &self.joints,
+            speed: limits.speed,
+        };
         let follow = PathJoints::follow(&self.arm.kinematics, path, &self.tool.flange_from_tcp, &self.joints);
         let mut joints =
-            follow.map_err(|(s, error)| self.path_problem(path, s, &self.follow_reason(&error)))?;
-        let timing = time_path(&mut joints, &self.timing_limits(), &limits).map_err(|error| match error {
-            TimingError::Path { position, error } => {
-                self.path_problem(path, position, &Reach(&error).to_string())
-            }
-            TimingError::Discontinuous { position, joint } => {
-                self.path_problem(path, position, &self.follow_reason(&FollowError::Jump { joint }))
-            }
-            TimingError::NoSpeed => self.path_problem(path, 0.0, NO_USEFUL_SPEED),
-            TimingError::Length(_) | TimingError::PathLimit { .. } | TimingError::JointLimit { .. } => {
-                self.path_problem(path, 0.0, &format!("its limits give no motion: {error:?}"))
-            }
-        })?;
+            follow.map_err(|(s, error)| path_problem(path, s, &self.follow_reason(&error), &trouble))?;
+        let timing = time_path(&mut joints, &self.timing_limits(), &limits)
+            .map_err(|error| self.timing_problem(path, &error, &trouble))?;
         info.constant_part = constant_part(&timing, limits.speed);
         let end = joints.end();
-        let mut notices = self.slowdowns(path, &timing, &limits)?;
-        notices.extend(self.stretch(path, &timing, &limits)?);
+        let mut notices = self.slowdowns(path, &timing, &limits, &trouble)?;
+        notices.extend(stretch(path, &timing, &limits, &trouble)?);
         notices.extend(goal.and_then(|goal| self.other_configuration(goal, &end)));
         let commands = self.blocks(at, segment, path, &timing, &limits);
         self.joints = end;
@@ -141,10 +140,23 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     }
 
     /// What the operator should know about each slowdown; with the arc on it may be refused.
-    fn slowdowns(&self, path: &Path, timing: &Timing, limits: &PathLimits) -> Result<Vec<String>, Problem> {
+    fn slowdowns(
+        &self,
+        path: &Path,
+        timing: &Timing,
+        limits: &PathLimits,
+        trouble: &Trouble<'_, N, K>,
+    ) -> Result<Vec<String>, Problem> {
         let mut notices = Vec::new();
+        let mut suggestion = None;
         for slowdown in timing.slowdowns() {
-            let text = self.slowdown_text(path, slowdown, limits);
+            let remedy = if slowdown.sustainable < limits.speed {
+                let suggestion = suggestion.get_or_insert_with(|| trouble.suggestion());
+                remedy(path, slowdown, suggestion.as_deref())
+            } else {
+                String::new()
+            };
+            let text = self.slowdown_text(path, slowdown, limits) + &remedy;
             let policy = &self.cell.arc;
             let matters = slowdown.speed < limits.speed * (1.0 - policy.speed_tolerance);
             if self.arc && policy.refuse_slowdown && matters {
@@ -164,7 +176,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         };
         format!(
             "slows from {:.1} to {:.1} {speed_unit} between {:.1} and {:.1} {unit} (least at {:.1} {unit}){}: \
-             joint {} is at its {order} limit{}",
+             joint {} is at its {order} limit",
             limits.speed * factor,
             slowdown.speed * factor,
             slowdown.from * factor,
@@ -172,24 +184,27 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             slowdown.place * factor,
             if self.arc { " with the arc on" } else { "" },
             self.arm.joint_names[slowdown.joint],
-            remedy(slowdown, limits, speed_unit, factor),
         )
     }
 
-    /// No optimum was found: the whole move takes longer. Bearable up to a point, and then a problem.
-    fn stretch(&self, path: &Path, timing: &Timing, limits: &PathLimits) -> Result<Option<String>, Problem> {
-        if timing.kind() != TimingKind::Stretched {
-            return Ok(None);
+    fn timing_problem(
+        &self,
+        path: &Path,
+        error: &TimingError<InverseError>,
+        trouble: &Trouble<'_, N, K>,
+    ) -> Problem {
+        match *error {
+            TimingError::Path { position, error } => {
+                path_problem(path, position, &Reach(&error).to_string(), trouble)
+            }
+            TimingError::Discontinuous { position, joint } => {
+                path_problem(path, position, &self.follow_reason(&FollowError::Jump { joint }), trouble)
+            }
+            TimingError::NoSpeed => path_problem(path, 0.0, NO_USEFUL_SPEED, trouble),
+            TimingError::Length(_) | TimingError::PathLimit { .. } | TimingError::JointLimit { .. } => {
+                path_problem(path, 0.0, &format!("its limits give no motion: {error:?}"), trouble)
+            }
         }
-        let ramps = limits.speed / limits.acceleration + limits.acceleration / limits.jerk;
-        let times = timing.duration() / (path.length() / limits.speed + ramps);
-        if times > STRETCH_MAX {
-            let at = timing.slowdowns().first().map_or(0.0, |slowdown| slowdown.place);
-            return Err(self.path_problem(path, at, NO_USEFUL_SPEED));
-        }
-        Ok(Some(format!(
-            "the whole move takes {times:.1} times as long as programmed: its joints leave no better speed"
-        )))
     }
 
     /// The move ends in another turn or configuration than the point was taught in.
@@ -208,30 +223,54 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let name = |joint: usize| &self.arm.joint_names[joint];
         match error {
             FollowError::Inverse(error) => Reach(error).to_string(),
-            FollowError::JointLimit { joint, limit } => format!(
-                "joint {} is at its limit of {:.1} deg; another torch angle or configuration keeps clear of it",
-                name(*joint),
-                limit.to_degrees()
-            ),
-            FollowError::Jump { joint } => format!(
-                "joint {} would have to jump: the path crosses a singularity; tilt the torch a few degrees, or use MOVJ",
-                name(*joint)
-            ),
+            FollowError::JointLimit { joint, limit } => {
+                format!("joint {} is at its limit of {:.1} deg", name(*joint), limit.to_degrees())
+            }
+            FollowError::Jump { joint } => {
+                format!("joint {} would have to jump: the path crosses a singularity", name(*joint))
+            }
         }
-    }
-
-    fn path_problem(&self, path: &Path, s: f64, reason: &str) -> Problem {
-        Problem::Path { place: place(path, s), reason: reason.into() }
     }
 }
 
-/// What would keep the speed constant.
-fn remedy(slowdown: &Slowdown, limits: &PathLimits, speed_unit: &str, factor: f64) -> String {
-    if slowdown.sustainable >= limits.speed {
-        return String::new();
+/// No optimum was found: the whole move takes longer. Bearable up to a point, and then a problem.
+fn stretch<const N: usize, K: PlanningArm<N>>(
+    path: &Path,
+    timing: &Timing,
+    limits: &PathLimits,
+    trouble: &Trouble<'_, N, K>,
+) -> Result<Option<String>, Problem> {
+    if timing.kind() != TimingKind::Stretched {
+        return Ok(None);
     }
+    let ramps = limits.speed / limits.acceleration + limits.acceleration / limits.jerk;
+    let times = timing.duration() / (path.length() / limits.speed + ramps);
+    if times > STRETCH_MAX {
+        let at = timing.slowdowns().first().map_or(0.0, |slowdown| slowdown.place);
+        return Err(path_problem(path, at, NO_USEFUL_SPEED, trouble));
+    }
+    Ok(Some(format!(
+        "the whole move takes {times:.1} times as long as programmed: its joints leave no better speed"
+    )))
+}
+
+/// A problem at a place of the path, with what would solve it.
+fn path_problem<const N: usize, K: PlanningArm<N>>(
+    path: &Path,
+    s: f64,
+    reason: &str,
+    trouble: &Trouble<'_, N, K>,
+) -> Problem {
+    let remedy = trouble.suggestion().map_or_else(String::new, |suggestion| format!("; {suggestion}"));
+    Problem::Path { place: place(path, s), reason: format!("{reason}{remedy}") }
+}
+
+/// What would keep the speed constant.
+fn remedy(path: &Path, slowdown: &Slowdown, suggestion: Option<&str>) -> String {
+    let (_, speed_unit, factor) = units(path);
     let held = slowdown.sustainable * factor;
-    format!("; {held:.1} {speed_unit} could be held all along, or more with the torch tilted a few degrees")
+    let or = suggestion.map_or_else(String::new, |suggestion| format!("; {suggestion}"));
+    format!("; {held:.1} {speed_unit} could be held all along{or}")
 }
 
 /// Unit of length, unit of speed, and the factor from SI to them.

@@ -13,7 +13,7 @@ pub use curve::{Arc, ArcError, Curve};
 pub use orientation::{Geodesic, Orientation, Through};
 pub use timing::{PathState, TimingPiece};
 
-use crate::geometry::{Pose, PoseJet};
+use crate::geometry::{Pose, PoseJet, Rotation};
 
 /// Positions closer than this are one point: 1 nm.
 pub const SAME_POSITION: f64 = 1e-9;
@@ -83,6 +83,12 @@ impl Path {
         let orientation = Orientation::Geodesic(Geodesic::new(start.rotation, end.rotation));
         let length = arc.radius * arc.angle;
         Ok(Self { curve: Curve::Arc(arc), orientation, length, measure: Measure::Length })
+    }
+
+    /// The same way of the tool centre point with the tool turned by a constant rotation in its own frame.
+    #[must_use]
+    pub fn tilted(&self, tilt: &Rotation) -> Self {
+        Self { orientation: self.orientation.tilted(tilt), ..*self }
     }
 
     /// Length of the path: metres or radians, as [`Path::measure`] says. Zero where nothing moves.

@@ -13,6 +13,16 @@ pub enum Orientation {
 }
 
 impl Orientation {
+    /// Followed by a constant rotation in the turning frame: the angular velocity stays.
+    pub(super) fn tilted(&self, tilt: &Rotation) -> Self {
+        match *self {
+            Self::Geodesic(of) => {
+                Self::Geodesic(Geodesic { start: of.start * tilt, end: of.end * tilt, ..of })
+            }
+            Self::Through(of) => Self::Through(Through { via: of.via * tilt, ..of }),
+        }
+    }
+
     /// The orientation at coordinate `s` of a path of `length`, and the angular velocity with its two derivatives.
     pub(super) fn at(&self, s: f64, length: f64) -> (Rotation, [Vector3; 3]) {
         match self {

@@ -111,3 +111,25 @@ fn part_of_a_circle_keeps_its_sense() {
     let back = Path::arc_between(&at(2.0), &at(1.0), &at(0.0), &at(1.0), &at(0.0)).unwrap();
     assert!((back.pose(0.5).translation.vector - at(0.5).translation.vector).norm() < 1e-14);
 }
+
+#[test]
+fn a_tilted_path_has_the_same_points_and_turns_likewise() {
+    let poses = [
+        pose(1.0, -0.1, 0.0, [0.1, 2.0, 0.3]),
+        pose(1.1, 0.0, 0.0, [0.3, 2.4, -0.3]),
+        pose(1.0, 0.1, 0.0, [0.9, 2.2, 0.8]),
+    ];
+    let tilt = Rotation::from_scaled_axis(Vector3::new(0.1, -0.05, 0.02));
+    for path in [Path::line(&poses[0], &poses[2]), Path::arc(&poses[0], &poses[1], &poses[2]).unwrap()] {
+        let tilted = path.tilted(&tilt);
+        for k in 0..=10 {
+            let (jet, other) = (
+                path.jet(path.length() * 0.1 * f64::from(k)),
+                tilted.jet(path.length() * 0.1 * f64::from(k)),
+            );
+            assert_eq!((jet.linear, jet.angular), (other.linear, other.angular));
+            assert_eq!(jet.pose.translation, other.pose.translation);
+            assert!((jet.pose.rotation * tilt).angle_to(&other.pose.rotation) < 1e-7);
+        }
+    }
+}
