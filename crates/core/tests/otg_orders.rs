@@ -233,13 +233,13 @@ fn a_wandering_target() {
         let (cycle, home) = (whole / 300.0, input.target.position);
         let (mut generator, mut output) = (Generator::new(cycle), Output::default());
         for step in 0..30_000 {
-            for axis in 0..3 {
+            for (axis, home) in home.iter().enumerate() {
                 let l = &input.limits;
                 let speed = 0.2 * l.velocity_max[axis].min(-l.velocity_min[axis]);
                 // Three slow waves and noise.
                 let phase = f64::from(step) / 300.0 + axis as f64;
                 input.target.position[axis] =
-                    home[axis] + speed * whole * phase.sin() + speed * cycle * random.normal(0.1);
+                    home + speed * whole * phase.sin() + speed * cycle * random.normal(0.1);
                 input.target.velocity[axis] = speed * phase.cos();
                 input.target.acceleration[axis] = 0.0;
             }
