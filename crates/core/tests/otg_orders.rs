@@ -233,7 +233,7 @@ fn a_wandering_target() {
         let (cycle, home) = (whole / 300.0, input.target.position);
         let (mut generator, mut output) = (Generator::new(cycle), Output::default());
         for step in 0..30_000 {
-            for (axis, home) in home.into_iter().enumerate() {
+            for (axis, home) in home.iter().enumerate() {
                 let l = &input.limits;
                 let speed = 0.2 * l.velocity_max[axis].min(-l.velocity_min[axis]);
                 // Three slow waves and noise.

@@ -54,7 +54,10 @@ fuzz_target!(|data: &[u8]| {
         Synchronization::Phase,
     ];
     input.synchronization = [modes_of[(modes & 3) as usize]; N];
-    input.control = std::array::from_fn(|i| if modes >> (2 + i) & 1 != 0 { Control::Velocity } else { Control::Position });
+    input.control =
+        std::array::from_fn(
+            |i| if modes >> (2 + i) & 1 != 0 { Control::Velocity } else { Control::Position },
+        );
     if flags & 8 != 0 {
         input.duration_min = Some(row()[0].abs());
     }

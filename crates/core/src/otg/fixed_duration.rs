@@ -103,16 +103,14 @@ impl Draft<'_> {
         let Problem { a0, af, .. } = *problem;
         let up = Extreme { shape: mixture.up, sign: 1.0, a0, af };
         let down = Extreme { shape: mixture.down, sign: -1.0, a0, af };
-        let (pieces, len) = mean(&up.all(), &down.all(), mixture.share);
-        let forward = len - len / 2;
-        for piece in &pieces[..forward] {
+        let (up, down) = (up.all(), down.all());
+        // Half from either end: the borders near the end, counted from the start of a long motion, would be rounded.
+        let half = 0.5 * up.iter().map(|piece| piece.duration).sum::<f64>();
+        for piece in mean(&up, &down, mixture.share, half) {
             self.forward(piece.duration, piece.jerk, piece.acceleration);
         }
-        let mut last = [Piece::NONE; BACKWARD];
-        for (place, piece) in last.iter_mut().zip(&pieces[forward..len]) {
-            *place = *piece;
-        }
-        self.backward(&last)
+        let last = mean(&backwards(&up), &backwards(&down), mixture.share, half);
+        self.backward(&backwards(&last))
     }
 }
 
@@ -262,37 +260,45 @@ impl Ramps {
     }
 }
 
-/// Most pieces of a mixture: two motions of seven pieces each have at most twelve inner borders.
+/// Most pieces of half a mixture: two motions of seven pieces each have at most twelve inner borders.
 const MAX_PIECES: usize = 13;
-/// As many of them as are reckoned back from the target.
-const BACKWARD: usize = 6;
 
-/// The mean of two motions of one duration, as pieces and their number.
-fn mean(up: &[Piece; 7], down: &[Piece; 7], share: f64) -> ([Piece; MAX_PIECES], usize) {
+/// The mean of two motions up to the time `until`.
+fn mean(up: &[Piece; 7], down: &[Piece; 7], share: f64, until: f64) -> [Piece; MAX_PIECES] {
     let mean = |u: f64, d: f64| share * u + (1.0 - share) * d;
     let mut pieces = [Piece::NONE; MAX_PIECES];
-    let mut len = 0;
+    let mut left = until;
     let (mut i, mut k) = (0, 0);
     let (mut t_up, mut t_down) = (0.0, 0.0); // spent of the current piece of each
-    for _ in 0..up.len() + down.len() {
-        let (Some(u), Some(d)) = (up.get(i), down.get(k)) else { break };
-        let (left_up, left_down) = (u.duration - t_up, d.duration - t_down);
-        let duration = smaller(left_up, left_down);
-        if duration > 0.0 {
-            if let Some(place) = pieces.get_mut(len) {
-                let acceleration = mean(u.acceleration + t_up * u.jerk, d.acceleration + t_down * d.jerk);
-                *place = Piece::new(duration, mean(u.jerk, d.jerk), acceleration);
-                len += 1;
-            }
-            t_up += duration;
-            t_down += duration;
-        }
-        if left_up <= left_down {
+    for place in &mut pieces {
+        // Pieces without duration, seven at most of either, give way to the next.
+        while up.get(i).is_some_and(|piece| piece.duration <= t_up) {
             (i, t_up) = (i + 1, 0.0);
         }
-        if left_down <= left_up {
+        while down.get(k).is_some_and(|piece| piece.duration <= t_down) {
             (k, t_down) = (k + 1, 0.0);
         }
+        let (Some(u), Some(d)) = (up.get(i), down.get(k)) else { break };
+        let (left_up, left_down) = (u.duration - t_up, d.duration - t_down);
+        let duration = smaller(smaller(left_up, left_down), left);
+        let acceleration = mean(u.acceleration + t_up * u.jerk, d.acceleration + t_down * d.jerk);
+        *place = Piece::new(duration, mean(u.jerk, d.jerk), acceleration);
+        left -= duration;
+        if left <= 0.0 {
+            break;
+        }
+        t_up = if left_up <= left_down { u.duration } else { t_up + duration };
+        t_down = if left_down <= left_up { d.duration } else { t_down + duration };
     }
-    (pieces, len)
+    pieces
+}
+
+/// A motion backwards in time.
+fn backwards<const K: usize>(pieces: &[Piece; K]) -> [Piece; K] {
+    let mut turned = *pieces;
+    turned.reverse();
+    turned.map(|piece| {
+        let end = piece.acceleration + piece.duration * piece.jerk;
+        Piece::new(piece.duration, -piece.jerk, end)
+    })
 }

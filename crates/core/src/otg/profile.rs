@@ -4,8 +4,8 @@ use super::fixed_duration::Piece;
 use super::input::Control;
 use super::number::{SIXTH, larger};
 
-/// Most phases of a profile: four that bring the axis inside its limits, and thirteen of the motion proper.
-pub const MAX_PHASES: usize = 17;
+/// Most phases of a profile: four that bring the axis inside its limits, and fourteen of the motion proper.
+pub const MAX_PHASES: usize = 18;
 
 /// A piece of motion at constant jerk: its duration, and the state where it starts.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -218,7 +218,7 @@ impl Profile {
 
     /// All phases in order, those of the brake first.
     ///
-    /// A profile has at most 7 phases after the brake where the axis reaches its own minimum time or cruises, and at most 13 where
+    /// A profile has at most 7 phases after the brake where the axis reaches its own minimum time or cruises, and at most 14 where
     /// a synchronized axis has to move between two extreme motions.
     #[must_use]
     pub fn phases(&self) -> &[Phase] {

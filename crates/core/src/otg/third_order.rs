@@ -122,8 +122,17 @@ impl ThirdOrder {
     /// Before the times that are possible for good there may be an interval of possible ones, an island, if the acceleration need not
     /// change its sign.
     fn earliest_on_island(&self, from: f64) -> Option<Arrival> {
-        let Problem { displacement: p, a0, af, .. } = self.problem;
-        if a0 * af <= 0.0 || from >= self.start.t {
+        let Problem { displacement: p, v0, a0, vf, af, .. } = self.problem;
+        // The velocity must change by more than on the straight way from a₀ to a_f, and by less than on the way via zero. (Not by
+        // rounding: the families decide.)
+        let (change, sum) = ((vf - v0).abs(), a0 * a0 + af * af);
+        let direct = (a0 * a0 - af * af).abs();
+        let slack = ROUNDING * (v0.abs() + vf.abs() + sum);
+        if a0 * af <= 0.0
+            || 0.5 * direct > change + slack
+            || change > 0.5 * sum + slack
+            || from >= self.start.t
+        {
             return None;
         }
         let families = self.families();
