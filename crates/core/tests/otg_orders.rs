@@ -1,5 +1,5 @@
 //! Unlimited jerk and acceleration, zero limits, mixed controls, and targets that move.
-#![allow(clippy::panic)] // its helpers are tests too
+#![allow(clippy::panic)] // what its tests share is test code too
 
 mod otg_support;
 
