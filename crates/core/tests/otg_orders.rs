@@ -1,5 +1,5 @@
 //! Unlimited jerk and acceleration, zero limits, mixed controls, and targets that move.
-#![allow(clippy::panic)] // its helpers are tests too
+#![allow(clippy::panic)] // what its tests share is test code too
 
 mod otg_support;
 
@@ -252,6 +252,33 @@ fn a_wandering_target() {
             );
             output.pass_to_input(&mut input);
         }
+    }
+}
+
+/// 3 × (100 + 100) motions to rest of one and six axes, planned anew on each of their 400 cycles: always on time.
+#[test]
+fn motions_planned_anew_on_every_cycle_arrive_on_time() {
+    fn sweep<const N: usize>(distribution: Distribution) {
+        let mut random = Random(27);
+        for case in 0..100 {
+            let mut input: Input<N> = random_input(&mut random, distribution);
+            input.target = State::at_rest(input.target.position);
+            let duration = calculate(&input).unwrap().duration();
+            let cycle = duration / 400.5;
+            for step in 0..400 {
+                let rest = calculate(&input).unwrap_or_else(|e| panic!("{case} {step}: {e}\n{input:?}"));
+                let total = f64::from(step) * cycle + rest.duration();
+                assert!(
+                    (total - duration).abs() <= 1e-4 * duration,
+                    "{case} {step}: {total} {duration}\n{input:?}"
+                );
+                input.current = rest.at_time(cycle).state();
+            }
+        }
+    }
+    for distribution in [Distribution::PeerTest, Distribution::Robot, Distribution::Millimetres] {
+        sweep::<1>(distribution);
+        sweep::<6>(distribution);
     }
 }
 

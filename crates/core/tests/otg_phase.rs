@@ -5,7 +5,9 @@ mod otg_support;
 use otg_support::cases::{Distribution, random_input};
 use otg_support::judge::judge;
 use otg_support::random::Random;
-use seamline::otg::{Control, Error, Generator, Input, Output, State, Status, Synchronization, calculate};
+use seamline::otg::{
+    Control, Error, Generator, Input, Limits, Output, State, Status, Synchronization, calculate,
+};
 
 const STRAIGHT: f64 = 1e-12;
 
@@ -118,6 +120,20 @@ fn what_is_no_line_is_said_to_be_none() {
     input.synchronization = [Synchronization::Phase; 3];
     let trajectory = calculate(&input).unwrap();
     assert_eq!(trajectory.synchronized(), &[Synchronization::Time; 3]);
+    assert!(judge(&input, &trajectory, true).is_good());
+}
+
+/// A target acceleration that each axis can reach, but not the line, for which the first axis' jerk and the second's velocity count.
+#[test]
+fn a_line_whose_target_is_out_of_its_reach() {
+    let state = |a: f64| State { position: [0.0; 2], velocity: [0.0; 2], acceleration: [a; 2] };
+    let limits = Limits::symmetric([27.5, 19.5], [27.5, 27.5], [15.75, 27.5]);
+    let mut input = Input::new(state(0.0), state(27.5), limits);
+    phase(&mut input);
+    assert!(matches!(calculate(&input), Err(Error::NotCollinear { .. })));
+    input.synchronization = [Synchronization::Phase; 2];
+    let trajectory = calculate(&input).unwrap();
+    assert_eq!(trajectory.synchronized(), &[Synchronization::Time; 2]);
     assert!(judge(&input, &trajectory, true).is_good());
 }
 

@@ -1,5 +1,5 @@
 //! What must hold whatever the problem: symmetries, units, optimality, demanded durations, and the error on bad input.
-#![allow(clippy::panic)] // its helpers are tests too
+#![allow(clippy::panic)] // what its tests share is test code too
 
 mod otg_support;
 

@@ -1,5 +1,5 @@
 //! Random problems of every distribution, each trajectory judged by integration.
-#![allow(clippy::panic)] // its helpers are tests too
+#![allow(clippy::panic)] // what its tests share is test code too
 
 mod otg_support;
 

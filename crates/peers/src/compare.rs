@@ -3,7 +3,7 @@
 use crate::otg_support::cases::{Distribution, random_input};
 use crate::otg_support::judge::judge;
 use crate::otg_support::random::Random;
-use crate::{RsRuckig, Ruckig};
+use crate::{RsRuckig, Ruckig, keeps_limits};
 use seamline::otg::{Control, Input, Synchronization, calculate};
 
 /// What came out of a comparison.
@@ -20,7 +20,7 @@ pub struct Tally {
     pub longer: u64,
     /// As `longer`, but by less than 1e-7 in a problem of whole numbers: at an exact double root, the peer's tolerance takes it a little early.
     pub at_double_root: u64,
-    /// The peer is shorter, but not at the target when it says so.
+    /// The peer is shorter, but not at the target when it says so, or it passes its jerk or velocity limits on the way.
     pub peer_misses: u64,
     /// Ours is shorter, by more than 1e-9 (and valid).
     pub shorter: u64,
@@ -68,6 +68,13 @@ pub fn compare<const N: usize>(distribution: Distribution, control: Control, see
             tally.note(format!("{verdict:?}\n{input:?}"));
         }
         let peer = if symmetric { cpp.calculate(&input) } else { port.calculate(&input) };
+        let peer_keeps_limits = |input: &Input<N>, duration| {
+            if symmetric {
+                keeps_limits(input, duration, |time| cpp.at_time(time))
+            } else {
+                keeps_limits(input, duration, |time| port.at_time(time))
+            }
+        };
         let Some(peer) = peer else {
             tally.peer_failed += 1;
             continue;
@@ -75,7 +82,7 @@ pub fn compare<const N: usize>(distribution: Distribution, control: Control, see
         let ratio = ours.duration() / peer.duration;
         if ratio < 1.0 - 1e-9 {
             tally.shorter += 1;
-        } else if ratio > 1.0 + 1e-9 && peer.miss > 1e-8 {
+        } else if ratio > 1.0 + 1e-9 && (peer.miss > 1e-8 || !peer_keeps_limits(&input, peer.duration)) {
             tally.peer_misses += 1;
         } else if ratio > 1.0 + 1e-9 && ratio < 1.0 + 1e-7 && distribution == Distribution::Whole {
             tally.at_double_root += 1;

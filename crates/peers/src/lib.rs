@@ -113,6 +113,15 @@ impl<const N: usize> Default for RsRuckig<N> {
 }
 
 impl<const N: usize> RsRuckig<N> {
+    pub fn at_time(&self, time: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+        let zero = || rs::DataArrayOrVec::Stack([0.0; N]);
+        let (mut p, mut v, mut a) = (zero(), zero(), zero());
+        let (p_at, v_at, a_at) = (&mut Some(&mut p), &mut Some(&mut v), &mut Some(&mut a));
+        self.trajectory.at_time(time, p_at, v_at, a_at, &mut None, &mut None);
+        let row = |from: &rs::DataArrayOrVec<f64, N>| (0..N).map(|axis| from[axis]).collect();
+        (row(&p), row(&v), row(&a))
+    }
+
     pub fn set(&mut self, input: &Input<N>) {
         let values = |from: &[f64; N]| rs::DataArrayOrVec::Stack(*from);
         let to = &mut self.input;
@@ -153,12 +162,8 @@ impl<const N: usize> RsRuckig<N> {
             return None;
         }
         let duration = self.trajectory.get_duration();
-        let zero = || rs::DataArrayOrVec::Stack([0.0; N]);
-        let (mut p, mut v, mut a) = (zero(), zero(), zero());
-        let (p_at, v_at, a_at) = (&mut Some(&mut p), &mut Some(&mut v), &mut Some(&mut a));
-        self.trajectory.at_time(duration * (1.0 - 1e-15), p_at, v_at, a_at, &mut None, &mut None);
-        let row = |from: &rs::DataArrayOrVec<f64, N>| (0..N).map(|axis| from[axis]).collect::<Vec<_>>();
-        Some(Answer { duration, miss: miss(input, duration, &row(&p), &row(&v)) })
+        let (p, v, _) = self.at_time(duration * (1.0 - 1e-15));
+        Some(Answer { duration, miss: miss(input, duration, &p, &v) })
     }
 }
 
@@ -176,4 +181,28 @@ fn miss<const N: usize>(input: &Input<N>, duration: f64, p: &[f64], v: &[f64]) -
         worst = worst.max(off(v[axis], to.velocity[axis], speed));
     }
     worst
+}
+
+/// Whether a motion keeps its limits, at 2,000 samples: the jerk by the change of the acceleration, and the velocity once it is inside.
+pub fn keeps_limits<const N: usize>(
+    input: &Input<N>,
+    duration: f64,
+    at_time: impl Fn(f64) -> (Vec<f64>, Vec<f64>, Vec<f64>),
+) -> bool {
+    let step = duration / 2000.0;
+    let mut before = at_time(0.0).2;
+    let mut inside = [false; N];
+    let limits = &input.limits;
+    (1..2000).all(|k| {
+        let (_, v, a) = at_time(step * f64::from(k));
+        let kept = (0..N).all(|i| {
+            let slack = 1e-6 * (limits.velocity_max[i] - limits.velocity_min[i]);
+            let now = limits.velocity_min[i] - slack <= v[i] && v[i] <= limits.velocity_max[i] + slack;
+            let left = inside[i] && !now;
+            inside[i] |= now;
+            !left && (a[i] - before[i]).abs() <= limits.jerk_max[i] * step * (1.0 + 1e-6)
+        });
+        before = a;
+        kept
+    })
 }

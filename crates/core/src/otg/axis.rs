@@ -5,7 +5,7 @@ use super::error::Error;
 use super::extremal::Problem;
 use super::fixed_duration::{Draft, Later, Piece};
 use super::input::{Control, Input};
-use super::number::{between, larger};
+use super::number::{NOISE, between, larger};
 use super::profile::{Order, Point, Profile};
 use super::second_order::{Cruise, SecondOrder};
 use super::third_order::{Arrival, ThirdOrder};
@@ -55,15 +55,12 @@ impl AxisInput {
     /// round again.
     fn is_at_target(&self) -> bool {
         let Self { current, target, control, jerk, .. } = self;
-        let close = |a: f64, b: f64, size: f64| (a - b).abs() <= SAME * size;
+        let close = |a: f64, b: f64, size: f64| (a - b).abs() <= NOISE * size;
         (*control == Control::Velocity || close(current.p, target.p, self.coordinates))
             && close(current.v, target.v, current.v.abs() + target.v.abs())
             && (*jerk == f64::INFINITY || close(current.a, target.a, current.a.abs() + target.a.abs()))
     }
 }
-
-/// States that differ by this fraction of their size or less are one: a few roundings.
-const SAME: f64 = 4.0 * f64::EPSILON;
 
 /// The motion after the brake.
 #[derive(Debug, Clone, Copy)]
@@ -173,7 +170,7 @@ impl Axis {
         let mut problem = Self::normalised(input);
         self.scale = input.jerk;
         Brake { problem: &mut problem, profile, now: &mut self.start, scale: self.scale }.apply();
-        self.motion = Motion::Third(ThirdOrder::new(problem, SAME * input.coordinates / self.scale));
+        self.motion = Motion::Third(ThirdOrder::new(problem, NOISE * input.coordinates / self.scale));
     }
 
     fn set_second_order(&mut self, input: &AxisInput, profile: &mut Profile) {

@@ -3,7 +3,7 @@
 
 use super::extremal::Problem;
 use super::fixed_duration::Piece;
-use super::number::{SIXTH, between, larger, smaller};
+use super::number::{NOISE, SIXTH, between, larger, smaller};
 use super::profile::{Point, Profile};
 use crate::math::float::sqrt;
 
@@ -68,11 +68,8 @@ impl Brake<'_> {
 fn too_fast(problem: &Problem) -> bool {
     let a = larger(problem.a0, 0.0);
     let change = 0.5 * a * a;
-    problem.v0 + change > problem.v_max + ROUNDING * (problem.v0.abs() + change)
+    problem.v0 + change > problem.v_max + NOISE * (problem.v0.abs() + change)
 }
-
-/// Rounding of a velocity, as a fraction of its terms.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A piece of the brake, with the acceleration at its end.
 #[derive(Debug, Clone, Copy)]

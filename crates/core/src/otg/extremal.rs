@@ -5,7 +5,7 @@
 //! where x or n meets its limit, and with a cruise in the middle where the velocity meets its limit. That is one family with
 //! one parameter. Its mirror image gets least far.
 
-use super::number::{SIXTH, between, larger, smaller};
+use super::number::{NOISE, SIXTH, between, larger, smaller};
 use crate::math::float::{cbrt, sqrt};
 
 /// A problem of third order with jerk limit 1: from (0, v₀, a₀) to (displacement, v_f, a_f).
@@ -106,7 +106,7 @@ pub(super) struct Shape {
 /// Newton's method doubles the number of good digits with each step, so that the step after one this small is exact.
 const LAST_STEP: f64 = 1e-8;
 
-/// Rounding of a sum, as a fraction of its terms.
+/// Rounding of a displacement.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
 /// Most steps of the root search; 16 is the most seen. Where the displacement is convex, which is everywhere but on a hump, Newton's method
@@ -116,8 +116,12 @@ const MAX_STEPS: usize = 80;
 impl Family {
     pub(super) fn new(problem: &Problem) -> Self {
         let Problem { v0, a0, vf, af, v_max, a_max, a_min, .. } = *problem;
-        let c = (vf - v0) - 0.5 * (af - a0) * (af + a0);
-        // At C = 0 either order serves; the island, if there is one, shows where a₀ > 0.
+        let mut c = (vf - v0) - 0.5 * (af - a0) * (af + a0);
+        // On the last stretch of a motion C is zero but for rounding. Either order serves then; the island, if there is one, shows
+        // where a₀ > 0.
+        if c.abs() <= NOISE * (a0 * a0 + af * af + v0.abs() + vf.abs()) {
+            c = 0.0;
+        }
         if c < 0.0 || (c == 0.0 && a0 < 0.0) {
             Self::ordered(vf, -af, v0, -a0, -c, -a_min, a_max, v_max, true)
         } else {
@@ -157,11 +161,12 @@ impl Family {
             reversed,
         };
         // The peak must reach a₀: x² = n² + C ≥ a₀². Where r is rounding only, there is no gap between island and main arc.
+        let noise = NOISE * (a0 * a0 + af * af + v0.abs() + vf.abs());
         let r_squared = a0 * a0 - c;
-        if a0 > 0.0 && r_squared > ROUNDING * (a0 * a0 + af * af + v0.abs() + vf.abs()) {
+        if a0 > 0.0 && r_squared > noise {
             let r = sqrt(r_squared);
-            if af >= r {
-                family.island = Some((-af, -r));
+            if af > 0.0 && af * af >= r_squared - noise {
+                family.island = Some((-af, -smaller(r, af)));
             }
             family.start = larger(family.parameter(r_squared, r), -af);
         }

@@ -56,7 +56,15 @@ impl<const N: usize> Line<N> {
                 }
             }
         }
-        Ok(Self { reference, direction, scalar: scalar(&axes, members, &direction, reference) })
+        let scalar = scalar(&axes, members, &direction, reference);
+        // One axis' jerk limit and another's velocity limit may keep the line from a target that each axis alone could reach.
+        let on_the_way = scalar.target.v - 0.5 * scalar.target.a * scalar.target.a.abs() / scalar.jerk;
+        let slack = PARALLEL * (scalar.target.v.abs() + on_the_way.abs());
+        let reachable = scalar.v_min - slack <= on_the_way && on_the_way <= scalar.v_max + slack;
+        if control == Control::Position && scalar.jerk > 0.0 && !reachable {
+            return Err(reference);
+        }
+        Ok(Self { reference, direction, scalar })
     }
 }
 

@@ -3,6 +3,10 @@
 /// A multiplication is several times as fast as a division.
 pub(super) const SIXTH: f64 = 1.0 / 6.0;
 
+/// How far the rounding of states may have added up over the cycles of a motion that is planned anew on each, as a fraction of the
+/// numbers themselves.
+pub(super) const NOISE: f64 = 1024.0 * f64::EPSILON;
+
 /// The larger; the second if one of them is not a number. (`f64::max` takes five instructions to treat both alike.)
 #[inline]
 pub(super) fn larger(a: f64, b: f64) -> f64 {

@@ -22,8 +22,12 @@ pub(super) struct Demand {
     pub(super) step: f64,
 }
 
-/// Durations that differ by this fraction are one: a few roundings.
+/// Durations that differ by this fraction are the same number of steps: a few roundings.
 const SAME: f64 = 1e-15;
+
+/// An axis that cannot arrive at the common time, but could earlier by this fraction of it, does so: on the last stretch of a motion that is
+/// planned anew on every cycle, all axes have this one time but for rounding, and any other one is far later.
+const ALMOST: f64 = 1e-9;
 
 impl Demand {
     /// The first duration from `t` on that meets the demand.
@@ -46,7 +50,6 @@ impl Plan {
     ///
     /// The solution for the earliest time is kept as long as it serves, so that the axis that sets the duration keeps its own.
     fn arrive(&mut self, axis: &Axis, t: f64) -> f64 {
-        // Twice, so that a whole number of steps is no earlier than what was rounded up to it.
         if (self.earliest - t).abs() <= 2.0 * SAME * t {
             return t;
         }
@@ -55,6 +58,7 @@ impl Plan {
         }
         match axis.at(t) {
             Some(solution) => self.solution = solution,
+            None if t - self.earliest <= ALMOST * t => {}
             None => self.earliest = axis.earliest(t, &mut self.solution),
         }
         larger(self.earliest, t)

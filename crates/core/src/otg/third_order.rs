@@ -5,7 +5,7 @@
 
 use super::extremal::{Extremal, Family, Problem, Shape};
 use super::fixed_duration::{Later, Mixture, Ramps};
-use super::number::larger;
+use super::number::{NOISE, larger};
 
 /// The axis' problem, ready to be asked when the axis can arrive.
 #[derive(Debug, Clone, Copy)]
@@ -51,9 +51,6 @@ enum Side {
     Below,
 }
 
-/// Rounding of a displacement, as a fraction of the sum of its terms.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
-
 impl ThirdOrder {
     /// `coordinates`: how far the displacement may be off because its ends are large.
     pub(super) fn new(problem: Problem, coordinates: f64) -> Self {
@@ -61,7 +58,7 @@ impl ThirdOrder {
         let up = Family::new(&problem);
         let start = up.at_start();
         let terms = v0.abs() + vf.abs() + a0 * a0 + af * af + start.x * start.x;
-        Self { problem, up, start, coordinates, rounding: ROUNDING * terms }
+        Self { problem, up, start, coordinates, rounding: NOISE * terms }
     }
 
     /// Displacements of about this duration that are closer than this are one.
@@ -127,7 +124,7 @@ impl ThirdOrder {
         // rounding: the families decide.)
         let (change, sum) = ((vf - v0).abs(), a0 * a0 + af * af);
         let direct = (a0 * a0 - af * af).abs();
-        let slack = ROUNDING * (v0.abs() + vf.abs() + sum);
+        let slack = NOISE * (v0.abs() + vf.abs() + sum);
         if a0 * af <= 0.0
             || 0.5 * direct > change + slack
             || change > 0.5 * sum + slack
