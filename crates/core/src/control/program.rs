@@ -106,7 +106,7 @@ impl<const N: usize> Program<N> {
         }
         // Each turn removes a command, or is the last.
         for _ in 0..PENDING {
-            if !self.finish_head(goal, period)? {
+            if !self.finish_head(goal, kinematics, period)? {
                 break;
             }
         }
@@ -114,7 +114,12 @@ impl<const N: usize> Program<N> {
     }
 
     /// Removes the first pending command if it is done; false where it is not.
-    fn finish_head(&mut self, goal: f64, period: f64) -> Result<bool, Fault> {
+    fn finish_head<K: Kinematics<N>>(
+        &mut self,
+        goal: f64,
+        kinematics: &K,
+        period: f64,
+    ) -> Result<bool, Fault> {
         match self.head() {
             None => return Ok(false),
             Some(Command::Move(block)) => {
@@ -123,9 +128,8 @@ impl<const N: usize> Program<N> {
                     return Ok(false);
                 }
                 let rests = block.ends_at_rest;
-                if let Motion::Joint(trajectory) = &block.motion {
-                    self.position = trajectory.at_time(trajectory.duration()).position;
-                }
+                // Exactly where the move ends, however the cycles fell.
+                self.position = joints_on(block, block.duration(), &self.position, kinematics)?.position;
                 self.move_start = end;
                 self.pop(goal);
                 if self.head_move().is_none() {
