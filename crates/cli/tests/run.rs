@@ -247,6 +247,20 @@ fn wrong_cells_get_one_message_and_no_report() {
     }
 }
 
+/// A job that gives no speed at all takes the cell's, and says so.
+#[test]
+fn a_missing_speed_is_the_cells() {
+    let folder = folder("speeds");
+    let job = folder.join("speeds.JBI");
+    let text_of_job = JOB.replace(" VJ=50.00", "").replace(" V=50.0", "").replace("ARCON ASF#(1)\n", "");
+    fs::write(&job, text_of_job).expect("a job file");
+    let output = seamline(&["check", text(&job)]);
+    let stdout = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(stdout.contains(":19:1: VJ is missing, taken from the cell's default"), "{stdout}");
+    assert!(stdout.contains(":20:1: V is missing, taken from the cell's default"), "{stdout}");
+}
+
 #[test]
 fn missing_files_are_named() {
     let out = folder("missing").join("out");

@@ -207,6 +207,8 @@ pub enum SpeedOrigin {
     ArcCondition,
     /// The last move of the same sort that had one.
     LastMove(Location),
+    /// The cell's default: nothing in the job gives one.
+    Cell,
 }
 
 /// How the end point of a move is passed.
@@ -322,6 +324,7 @@ impl fmt::Display for SpeedOrigin {
             Self::SpeedInstruction(at) => write!(f, "SPEED in {at}"),
             Self::ArcCondition => write!(f, "the arc's condition"),
             Self::LastMove(at) => write!(f, "the move in {at}"),
+            Self::Cell => write!(f, "the cell's default"),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::expression::SignalKind;
 use super::position::{Frame, JobPosition};
-use super::step::ArcCondition;
+use super::step::{ArcCondition, Speed};
 
 /// The cell as a job sees it.
 ///
@@ -21,4 +21,10 @@ pub trait World {
 
     /// The speed in mm/s that an arc condition of the cell asks for. `None` where it has none.
     fn arc_speed_mm_s(&mut self, condition: &ArcCondition) -> Option<f64>;
+
+    /// The speed of a move that no rule of the job gives one: of a joint move, or of one along a path. `None` where such
+    /// a move is a mistake.
+    fn default_speed(&mut self, _joint: bool) -> Option<Speed> {
+        None
+    }
 }

@@ -4,7 +4,7 @@ use seamline::geometry::Pose;
 
 use crate::cell::{Cell, WeldSpeedRule};
 use crate::job::{
-    ArcCondition, Coordinates, Frame, JobPosition, Rectangular, SignalKind, World, joints_from_pulses,
+    ArcCondition, Coordinates, Frame, JobPosition, Rectangular, SignalKind, Speed, World, joints_from_pulses,
     pulses_from_joints,
 };
 use crate::plan::{Arm, PlanningArm};
@@ -105,5 +105,14 @@ impl<const N: usize, K: PlanningArm<N>> World for CellWorld<'_, N, K> {
         }
         let file = condition.file.and_then(|number| self.cell.arc_start(number));
         condition.speed_mm_s.or(file.map(|file| file.speed * 1000.0))
+    }
+
+    fn default_speed(&mut self, joint: bool) -> Option<Speed> {
+        let rules = &self.cell.job;
+        Some(if joint {
+            Speed::JointPercent(rules.joint_speed * 100.0)
+        } else {
+            Speed::Linear { mm_s: rules.speed * 1000.0 }
+        })
     }
 }

@@ -46,7 +46,7 @@ impl Interpreter {
     }
 
     /// The speed, by the first rule that has one: the line; between ARCON and ARCOF the arc's condition; the last
-    /// SPEED; the last move of the same sort.
+    /// SPEED; the last move of the same sort; the cell.
     pub(super) fn speed(
         &mut self,
         step: &MoveInstruction,
@@ -70,6 +70,8 @@ impl Interpreter {
             (given.clone(), SpeedOrigin::SpeedInstruction(given.at.clone()))
         } else if let Some(given) = last {
             (given.clone(), SpeedOrigin::LastMove(given.at.clone()))
+        } else if let Some(speed) = world.default_speed(joint) {
+            (Given { speed, at: at.clone(), integer: None }, SpeedOrigin::Cell)
         } else {
             return Err(Fault { column, mistake: Mistake::NoSpeed { instruction: step.word() } });
         };
