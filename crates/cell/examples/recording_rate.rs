@@ -4,11 +4,10 @@
 
 use std::time::Instant;
 
+use seamline::control::Mode;
 use seamline::geometry::{Pose, Vector3};
 use seamline::path::Path;
-use seamline_cell::record::{
-    Acceptance, JointInfo, Recorder, RunInfo, RunMode, Sample, SegmentInfo, SegmentKind,
-};
+use seamline_cell::record::{Acceptance, JointInfo, Recorder, RunInfo, Sample, SegmentInfo, SegmentKind};
 
 const ROWS: u32 = 2_000_000;
 
@@ -36,7 +35,7 @@ fn main() -> std::io::Result<()> {
     for cycle in 0..ROWS {
         let s = f64::from(cycle) / f64::from(ROWS);
         let mut sample = Sample::at_rest();
-        (sample.time, sample.mode) = (f64::from(cycle) * run.period, RunMode::Running);
+        (sample.time, sample.mode) = (f64::from(cycle) * run.period, Mode::Running);
         (sample.segment, sample.arc, sample.tcp_speed) = (1, true, s);
         sample.tcp = path.pose(s);
         for joint in 0..6 {

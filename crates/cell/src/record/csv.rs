@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 
 use nalgebra::{Quaternion, Unit};
+use seamline::control::Mode;
 use seamline::geometry::{Pose, Rotation, Vector3};
 
 use super::number;
-use super::sample::{MAX_JOINTS, RunMode, Sample};
+use super::sample::{MAX_JOINTS, Sample};
 
 /// The columns for a robot of `joints` joints, separated by commas.
 pub(super) fn header(joints: usize) -> String {
@@ -76,7 +77,7 @@ pub(super) fn parse_row(row: &str, joints: usize) -> Result<Sample, usize> {
     let mut cells = Cells { cells: row.split(','), column: 0 };
     let mut sample = Sample::at_rest();
     sample.time = cells.next(number::parse)?;
-    sample.mode = cells.next(RunMode::from_name)?;
+    sample.mode = cells.next(Mode::from_name)?;
     sample.line = cells.next(|text| text.parse().ok())?;
     sample.segment = cells.next(|text| text.parse().ok())?;
     sample.override_rate = cells.next(number::parse)?;

@@ -27,7 +27,7 @@ pub use info::{Acceptance, Event, EventKind, JointInfo, RunInfo, SegmentInfo, Se
 pub use plot::{JointTraces, PathPoint, PlotData};
 pub use recorder::{Recorder, SampleSender};
 pub use recording::{Recording, RecordingError};
-pub use sample::{MAX_JOINTS, RunMode, Sample};
+pub use sample::{MAX_JOINTS, Sample};
 pub use summary::{Check, Incident, Outcome, Summary, Verdict};
 pub use table::rounded;
 pub use times::{TimeFigures, TimeHistogram};

@@ -2,11 +2,12 @@
 
 use std::collections::VecDeque;
 
+use seamline::control::Mode;
 use seamline::geometry::Vector3;
 
 use super::envelope::{Envelope, Trace};
 use super::info::{Event, EventKind, SegmentInfo, SegmentKind};
-use super::sample::{MAX_JOINTS, RunMode, Sample};
+use super::sample::{MAX_JOINTS, Sample};
 
 /// Curves of one joint over time, SI.
 #[derive(Debug, Clone, Default)]
@@ -55,7 +56,7 @@ pub struct PlotData {
     /// The commanded path of the tool centre point.
     pub tool_path: Vec<PathPoint>,
     /// Every change of mode, with its time.
-    pub modes: Vec<(f64, RunMode)>,
+    pub modes: Vec<(f64, Mode)>,
     /// What happened, in order, with the tool centre point's position where known.
     pub events: Vec<(Event, Option<Vector3>)>,
 }
@@ -69,7 +70,7 @@ pub(super) struct PlotCollector {
     override_rate: Envelope,
     seam: [Envelope; 3],
     tool_path: ToolPath,
-    modes: Vec<(f64, RunMode)>,
+    modes: Vec<(f64, Mode)>,
     arc: bool,
     /// The dwell under way, with its segment.
     dwell: Option<(u32, (Event, Option<Vector3>))>,

@@ -185,14 +185,16 @@ impl Writer {
 mod tests {
     use super::*;
     use crate::record::testing::{Folder, Random, robot};
-    use crate::record::{Recording, RecordingError, RunMode};
+    use seamline::control::Mode;
+
+    use crate::record::{Recording, RecordingError};
     use seamline::geometry::{Pose, Rotation, Vector3};
 
     /// Any sample: numbers of all sizes, all modes.
     fn sample(random: &mut Random, cycle: u32, joints: usize) -> Sample {
         let mut sample = Sample::at_rest();
         sample.time = f64::from(cycle) * 1e-3;
-        sample.mode = RunMode::ALL[cycle as usize % RunMode::ALL.len()];
+        sample.mode = Mode::ALL[cycle as usize % Mode::ALL.len()];
         sample.line = cycle % 1013;
         sample.segment = (random.bits() >> 32) as u32;
         sample.override_rate = random.within(0.0, 1.0);

@@ -1,65 +1,10 @@
 //! One cycle, as it is recorded.
 
+use seamline::control::Mode;
 use seamline::geometry::Pose;
 
 /// The most joints that a sample holds; further entries of its arrays than the robot has joints stay zero.
 pub const MAX_JOINTS: usize = 7;
-
-/// What the controller was doing in a cycle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RunMode {
-    /// Drives off.
-    Disabled,
-    /// Drives on, nothing to do.
-    Standstill,
-    /// A job runs.
-    Running,
-    /// A job is paused, and the robot stands.
-    Holding,
-    /// Coming to a stop along the path.
-    Stopping,
-    /// A fault is latched.
-    Fault,
-}
-
-impl RunMode {
-    /// Every mode, in the order of declaration.
-    pub const ALL: [Self; 6] =
-        [Self::Disabled, Self::Standstill, Self::Running, Self::Holding, Self::Stopping, Self::Fault];
-
-    /// The word in the recording.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Disabled => "disabled",
-            Self::Standstill => "standstill",
-            Self::Running => "running",
-            Self::Holding => "holding",
-            Self::Stopping => "stopping",
-            Self::Fault => "fault",
-        }
-    }
-
-    /// The mode with this word.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|mode| mode.name() == name)
-    }
-}
-
-impl From<seamline::control::Mode> for RunMode {
-    fn from(mode: seamline::control::Mode) -> Self {
-        use seamline::control::Mode;
-        match mode {
-            Mode::Disabled => Self::Disabled,
-            Mode::Standstill => Self::Standstill,
-            Mode::Running => Self::Running,
-            Mode::Holding => Self::Holding,
-            Mode::Stopping => Self::Stopping,
-            Mode::Fault => Self::Fault,
-        }
-    }
-}
 
 /// One cycle of a run: SI units, the tool centre point in the robot frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,7 +12,7 @@ pub struct Sample {
     /// Time since the start of the run, in seconds.
     pub time: f64,
     /// What the controller was doing.
-    pub mode: RunMode,
+    pub mode: Mode,
     /// Line of the job file, counted from 1; 0 before the first.
     pub line: u32,
     /// Number of the segment under way, as in [`SegmentInfo::segment`](super::SegmentInfo::segment); 0 for none.
@@ -98,7 +43,7 @@ impl Sample {
     pub fn at_rest() -> Self {
         Self {
             time: 0.0,
-            mode: RunMode::Standstill,
+            mode: Mode::Standstill,
             line: 0,
             segment: 0,
             override_rate: 1.0,

@@ -12,7 +12,7 @@ use seamline::safety::{Fault, WorkspaceBox};
 use super::clock::thread_cpu_ns;
 use crate::cell::Cell;
 use crate::plan::{Arm, PlanningArm};
-use crate::record::{MAX_JOINTS, RunMode, Sample, TimeFigures, TimeHistogram};
+use crate::record::{MAX_JOINTS, Sample, TimeFigures, TimeHistogram};
 
 /// Late cycles in a row after which the arm stops.
 const OVERRUNS_IN_ROW: u32 = 20;
@@ -145,7 +145,7 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, C: StageClock> Machine<N, K
         let travelled = status.base_from_tcp.translation.vector - self.last_tcp.translation.vector;
         let mut sample = Sample {
             time: self.time(),
-            mode: RunMode::from(status.mode),
+            mode: status.mode,
             line: status.line,
             segment: status.segment,
             override_rate: status.rate,

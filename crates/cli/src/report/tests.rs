@@ -5,11 +5,12 @@
 use std::f64::consts::PI;
 use std::path::PathBuf;
 
+use seamline::control::Mode;
 use seamline::geometry::{EulerZyx, Pose};
 use seamline::path::Path as ToolPath;
 use seamline_cell::record::{
-    Acceptance, Analysis, Event, EventKind, Findings, JointInfo, MAX_JOINTS, Outcome, RunMode, Sample,
-    SegmentKind, TRACE_POINTS, TimeHistogram,
+    Acceptance, Analysis, Event, EventKind, Findings, JointInfo, MAX_JOINTS, Outcome, Sample, SegmentKind,
+    TRACE_POINTS, TimeHistogram,
 };
 
 use super::*;
@@ -182,9 +183,9 @@ fn run(fault_at: f64) -> (RunInfo, Summary, Findings) {
             lagging[joint] += (command[joint] - lagging[joint]) * PERIOD / 0.02;
         }
         let mode = match now {
-            _ if faulty => RunMode::Fault,
-            0.0 => RunMode::Holding,
-            _ => RunMode::Running,
+            _ if faulty => Mode::Fault,
+            0.0 => Mode::Holding,
+            _ => Mode::Running,
         };
         analysis.sample(&Sample {
             time,

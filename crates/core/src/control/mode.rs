@@ -47,6 +47,25 @@ impl Mode {
     pub const ALL: [Self; 6] =
         [Self::Disabled, Self::Standstill, Self::Running, Self::Holding, Self::Stopping, Self::Fault];
 
+    /// The word for it in recordings.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Disabled => "disabled",
+            Self::Standstill => "standstill",
+            Self::Running => "running",
+            Self::Holding => "holding",
+            Self::Stopping => "stopping",
+            Self::Fault => "fault",
+        }
+    }
+
+    /// The mode with this word.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|mode| mode.name() == name)
+    }
+
     /// The mode after an event, or `None` where the event means nothing in this mode and is refused.
     ///
     /// `resumable` tells whether a job stands where it was stopped, on its path: then a reset leads to

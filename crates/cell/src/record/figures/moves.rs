@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use seamline::control::Mode;
 use seamline::geometry::Vector3;
 use seamline::path::{Curve, Measure};
 use serde::Serialize;
@@ -9,7 +10,7 @@ use serde::Serialize;
 use super::deviation::{Deviation, Programmed};
 use super::joints::follows;
 use crate::record::info::{SegmentInfo, SegmentKind};
-use crate::record::sample::{RunMode, Sample};
+use crate::record::sample::Sample;
 
 /// Figures of one executed segment. What a kind of segment does not have is left out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -189,7 +190,7 @@ impl Current {
         let last_s = std::mem::replace(&mut self.last_s, s);
         let constant = self.info.constant_part.is_some_and(|[from, to]| from <= last_s && s <= to);
         if let (true, Some(before), Some(speed_programmed)) = (constant, before, self.info.speed)
-            && sample.mode == RunMode::Running
+            && sample.mode == Mode::Running
             && before.segment == sample.segment
         {
             let expected = speed_programmed * 0.5 * (before.override_rate + sample.override_rate);

@@ -2,12 +2,13 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use seamline::control::Mode;
 use seamline::geometry::{Pose, Rotation, Vector3};
 use seamline::path::Path;
 
 use super::*;
 use crate::record::testing::robot;
-use crate::record::{EventKind, Outcome, RunMode, SegmentKind, Summary, Verdict};
+use crate::record::{EventKind, Outcome, SegmentKind, Summary, Verdict};
 
 const PERIOD: f64 = 1e-3;
 
@@ -62,7 +63,7 @@ fn analyse(segments: &[SegmentInfo], cycles: u32, at: impl Fn(f64, &mut Sample))
     }
     for cycle in 0..cycles {
         let mut sample = Sample::at_rest();
-        sample.mode = RunMode::Running;
+        sample.mode = Mode::Running;
         sample.time = f64::from(cycle) * PERIOD;
         at(sample.time, &mut sample);
         analysis.sample(&sample);
