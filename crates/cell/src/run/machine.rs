@@ -127,7 +127,7 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, C: StageClock> Machine<N, K
     pub fn cycle(&mut self) -> (CycleOutput<N>, Sample) {
         let before = thread_cpu_ns();
         let output = self.cycle.step(&self.input, &mut self.queue, &mut self.clock);
-        self.times.whole.record(thread_cpu_ns() - before);
+        self.times.whole.record(thread_cpu_ns().saturating_sub(before));
         for (histogram, ns) in self.times.stages.iter_mut().zip(output.status.stage_ns) {
             histogram.record(u64::from(ns));
         }

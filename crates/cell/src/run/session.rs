@@ -41,7 +41,7 @@ pub struct RunOptions {
 pub struct Progress {
     /// Seconds of robot time so far.
     pub time: f64,
-    /// Seconds it will take, as planned.
+    /// Seconds it will take at this override, as planned.
     pub planned: f64,
     /// Line of the job.
     pub line: u32,
@@ -88,7 +88,8 @@ pub fn run<const N: usize, K: PlanningArm<N> + Send>(
     let walk = Walk::new(jobs, cell, arm)?;
     let mut supervisor = Supervisor::new(walk, producer, reads_inputs, recorder, arm.joint_names.clone());
     let started = Instant::now();
-    let mut watch = |beat: &Beat| progress(Progress { time: beat.time, planned: duration, line: beat.line });
+    let planned = duration / options.speed_override;
+    let mut watch = |beat: &Beat| progress(Progress { time: beat.time, planned, line: beat.line });
     let settle = (SETTLE / cell.cycle.period).ceil() as u64;
     let (samples, figures) = if options.realtime {
         realtime::run(machine, samples, &mut supervisor, settle, &mut watch)

@@ -129,3 +129,20 @@ fn override_and_pause_never_leave_the_path() {
     println!("worst shares of velocity, acceleration, jerk: {worst:?}");
     assert!(worst[0] <= 1.0 + 1e-9 && worst[1] <= 1.0 + 1e-3 && worst[2] <= 1.01);
 }
+
+/// A clock that runs backwards costs the measurement, never the cycle.
+#[test]
+fn a_clock_that_jumps_back_does_no_harm() {
+    struct Backwards(u64);
+    impl seamline::control::StageClock for Backwards {
+        fn now_ns(&mut self) -> u64 {
+            self.0 -= 1_000;
+            self.0
+        }
+    }
+    let (cell, arm) = setup();
+    let mut bench = Bench::new(&cell, &arm, commands(&cell, &arm, 200.0));
+    bench.cycle_with(Event::Start);
+    let output = bench.cycle.step(&bench.input, &mut bench.queue, &mut Backwards(1_000_000));
+    assert_eq!((output.status.fault, output.status.stage_ns), (None, [0; 4]));
+}

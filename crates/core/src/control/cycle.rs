@@ -118,7 +118,9 @@ impl<const N: usize, K: Kinematics<N>> Cycle<N, K> {
         let t3 = clock.now_ns();
         self.command(joints);
         let t4 = clock.now_ns();
-        let stage_ns = [t1 - t0, t2 - t1, t3 - t2, t4 - t3].map(|ns| u32::try_from(ns).unwrap_or(u32::MAX));
+        // A clock that jumps back must not stop the cycle: such a stage took no time.
+        let stage = |from: u64, to: u64| u32::try_from(to.saturating_sub(from)).unwrap_or(u32::MAX);
+        let stage_ns = [stage(t0, t1), stage(t1, t2), stage(t2, t3), stage(t3, t4)];
         self.output(refused, stage_ns)
     }
 
