@@ -27,6 +27,7 @@ enum Command {
     Fk(commands::fk::Arguments),
     Ik(commands::ik::Arguments),
     Otg(commands::otg::Arguments),
+    Profile(commands::profile::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
         Command::Fk(arguments) => commands::fk::run(&arguments),
         Command::Ik(arguments) => commands::ik::run(&arguments),
         Command::Otg(arguments) => commands::otg::run(&arguments),
+        Command::Profile(arguments) => commands::profile::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -6,4 +6,5 @@ pub(crate) mod fk;
 pub(crate) mod ik;
 mod inputs;
 pub(crate) mod otg;
+pub(crate) mod profile;
 pub(crate) mod run;
