@@ -185,8 +185,8 @@ fn every_activity_meets_every_event() {
         assert_eq!(motion.activity(), Activity::Moving);
         // Moving, arrived.
         assert_eq!((motion.at(103.01).position, motion.activity()), ([1.0], Activity::Holding));
-        // Holding, and nothing comes.
-        assert_eq!((motion.at(1e6).position, motion.activity()), ([1.0], Activity::Holding));
+        // Holding, and nothing comes, for ever.
+        assert_eq!((motion.at(f64::INFINITY).position, motion.activity()), ([1.0], Activity::Holding));
         // Holding, a target.
         let planned = motion.set_target(1e6, &to(2.0)).unwrap();
         assert_eq!((motion.activity(), planned.velocity_jump), (Activity::Moving, [0.0]));
