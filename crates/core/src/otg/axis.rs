@@ -7,6 +7,7 @@ use super::fixed_duration::{Draft, Later, Piece};
 use super::input::{Control, Input};
 use super::number::{NOISE, between, larger};
 use super::profile::{Order, Point, Profile};
+use super::rest_to_rest::RestToRest;
 use super::second_order::{Cruise, SecondOrder};
 use super::third_order::{Arrival, ThirdOrder};
 
@@ -49,6 +50,12 @@ impl AxisInput {
         }
     }
 
+    /// Whether the axis starts and ends at rest.
+    fn is_rest_to_rest(&self) -> bool {
+        let Self { current, target, .. } = self;
+        current.v == 0.0 && current.a == 0.0 && target.v == 0.0 && target.a == 0.0
+    }
+
     /// Whether the axis is where it is to be, but for rounding.
     ///
     /// The least duration jumps at such a state: one rounding error beyond a moving target, the axis would have to come
@@ -68,6 +75,8 @@ impl AxisInput {
 enum Motion {
     /// Position control with limited jerk.
     Third(ThirdOrder),
+    /// The same from rest to rest.
+    Rest(RestToRest),
     /// Position control with unlimited jerk.
     Second(SecondOrder),
     /// Velocity control: the velocity in the part of the position.
@@ -169,6 +178,10 @@ impl Axis {
     fn set_third_order(&mut self, input: &AxisInput, profile: &mut Profile) {
         let mut problem = Self::normalised(input);
         self.scale = input.jerk;
+        if input.is_rest_to_rest() {
+            self.motion = Motion::Rest(RestToRest::new(&problem));
+            return;
+        }
         Brake { problem: &mut problem, profile, now: &mut self.start, scale: self.scale }.apply();
         self.motion = Motion::Third(ThirdOrder::new(problem, NOISE * input.coordinates / self.scale));
     }
@@ -226,6 +239,12 @@ impl Axis {
                 *solution = Solution::Earliest(arrival);
                 arrival.t
             }
+            Motion::Rest(rest) => {
+                // Never asked for a later one: every time from the first on is possible.
+                let arrival = rest.earliest();
+                *solution = Solution::Earliest(arrival);
+                arrival.t
+            }
             Motion::Second(second) | Motion::Velocity(second) => {
                 let cruise = second.earliest(from);
                 *solution = Solution::Second(cruise);
@@ -244,6 +263,7 @@ impl Axis {
         let t = t - self.brake;
         match &self.motion {
             Motion::Third(third) => third.at(t).map(Solution::Later),
+            Motion::Rest(rest) => Some(Solution::Earliest(rest.at(t))),
             Motion::Second(second) | Motion::Velocity(second) => second.at(t).map(Solution::Second),
             Motion::Only(only) => (*only == t).then_some(Solution::Only),
         }
@@ -253,8 +273,9 @@ impl Axis {
     pub(super) fn write(&self, solution: &Solution, axis: usize, profile: &mut Profile) -> Result<(), Error> {
         let joined = match (&self.motion, solution) {
             (Motion::Third(third), Solution::Earliest(arrival)) => {
-                self.draft(profile).arrival(&third.problem, arrival)
+                self.draft(profile).arrival(third.problem.a0, third.problem.af, arrival)
             }
+            (Motion::Rest(_), Solution::Earliest(arrival)) => self.draft(profile).arrival(0.0, 0.0, arrival),
             (Motion::Third(third), Solution::Later(later)) => {
                 self.draft(profile).later(&third.problem, later)
             }

@@ -64,9 +64,9 @@ impl Draft<'_> {
     }
 
     /// The motion of an extreme arrival. False if the numbers have overflowed.
-    pub(super) fn arrival(&mut self, problem: &Problem, arrival: &Arrival) -> bool {
+    pub(super) fn arrival(&mut self, a0: f64, af: f64, arrival: &Arrival) -> bool {
         let Arrival { sign, shape, .. } = *arrival;
-        let motion = Extreme { shape, sign, a0: problem.a0, af: problem.af };
+        let motion = Extreme { shape, sign, a0, af };
         let [rise, hold, fall, end_of_fall, last_hold, last_rise] = motion.pieces();
         for piece in [rise, hold, fall] {
             self.forward(piece.duration, piece.jerk, piece.acceleration);
@@ -227,6 +227,12 @@ const LAST_STEP: f64 = 1e-8;
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Ramps {
+    /// The cruise velocity.
+    #[cfg(test)]
+    pub(super) fn velocity(&self) -> f64 {
+        self.w
+    }
+
     /// The motion by ramp, cruise and ramp that arrives after the time `t`, if Newton's method finds one.
     ///
     /// The displacement grows with the cruise velocity w: dP/dw = t_cruise + (x₁ + x₂)/2. What is found is judged by itself: ramps that

@@ -9,6 +9,7 @@
 //! | `extremal` | the motions that get farthest in a given time: one family, one parameter |
 //! | `third_order` | when an axis can arrive: the least time, and the intervals in which it cannot |
 //! | `fixed_duration` | how it arrives at a given time |
+//! | `rest_to_rest` | the same for an axis that starts and ends at rest, in closed form but for one search |
 //! | `second_order` | the same one derivative down: unlimited jerk, and velocity control |
 //! | `brake` | back inside the limits first |
 //! | `axis` | one axis, whichever of these it needs |
@@ -32,6 +33,7 @@ mod input;
 mod line;
 mod number;
 mod profile;
+mod rest_to_rest;
 mod second_order;
 mod synchronize;
 mod third_order;
