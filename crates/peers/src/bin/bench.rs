@@ -1,4 +1,5 @@
 //! `bench [INPUTS] [PASSES]`: time per calculation, ours and the peers', same inputs, one process.
+//! `bench worst [INPUTS] [PASSES]`: six axes, position control, ours and the C++ peer's, for as many inputs as one likes.
 //!
 //! Each input is timed on its own; of all passes the least counts, so that what other programs do to the machine does not. The C++ peer
 //! is timed inside (its own clock around the calculation), without its binding.
@@ -26,14 +27,14 @@ fn summary(mut least: Vec<f64>) -> Times {
     Times { mean, p999: at(0.999), worst: at(1.0) }
 }
 
-fn least<T>(inputs: &mut [T], passes: usize, mut run: impl FnMut(&mut T) -> f64) -> Times {
+fn least<T>(inputs: &mut [T], passes: usize, mut run: impl FnMut(&mut T) -> f64) -> Vec<f64> {
     let mut best = vec![f64::INFINITY; inputs.len()];
     for _ in 0..passes {
         for (best, input) in best.iter_mut().zip(inputs.iter_mut()) {
             *best = best.min(run(input));
         }
     }
-    summary(best)
+    best
 }
 
 fn clocked(run: impl FnOnce()) -> f64 {
@@ -42,39 +43,66 @@ fn clocked(run: impl FnOnce()) -> f64 {
     start.elapsed().as_nanos() as f64
 }
 
-fn bench<const N: usize>(name: &str, mut inputs: Vec<Input<N>>, passes: usize) {
+fn ours<const N: usize>(inputs: &mut [Input<N>], passes: usize) -> Vec<f64> {
     let mut trajectory = Trajectory::default();
-    let ours = least(&mut inputs, passes, |input| {
+    least(inputs, passes, |input| {
         clocked(|| {
             let _ = black_box(calculate_into(black_box(input), &mut trajectory));
         })
-    });
-    let mut cpp = Ruckig::new(N);
-    let cpp = least(&mut inputs, passes, |input| {
-        cpp.set(input);
-        cpp.timed()
-    });
-    let mut port = RsRuckig::<N>::default();
-    let port = least(&mut inputs, passes, |input| {
-        port.set(input);
+    })
+}
+
+fn cpp<const N: usize>(inputs: &mut [Input<N>], passes: usize) -> Vec<f64> {
+    let mut peer = Ruckig::new(N);
+    least(inputs, passes, |input| {
+        peer.set(input);
+        peer.timed()
+    })
+}
+
+fn port<const N: usize>(inputs: &mut [Input<N>], passes: usize) -> Vec<f64> {
+    let mut peer = RsRuckig::<N>::default();
+    least(inputs, passes, |input| {
+        peer.set(input);
         clocked(|| {
-            black_box(port.run());
+            black_box(peer.run());
         })
-    });
-    for (peer, times) in [("C++", &cpp), ("port", &port)] {
-        println!(
-            "{name:32} {N} {peer:5} ours {:7.0} {:7.0} {:7.0} ns | peer {:7.0} {:7.0} {:7.0} ns | ratio {:.3} {:.3} {:.3}",
-            ours.mean,
-            ours.p999,
-            ours.worst,
-            times.mean,
-            times.p999,
-            times.worst,
-            ours.mean / times.mean,
-            ours.p999 / times.p999,
-            ours.worst / times.worst
-        );
+    })
+}
+
+fn report(name: &str, axes: usize, peer: &str, ours: &Times, times: &Times) {
+    println!(
+        "{name:32} {axes} {peer:5} ours {:7.0} {:7.0} {:7.0} ns | peer {:7.0} {:7.0} {:7.0} ns | ratio {:.3} {:.3} {:.3}",
+        ours.mean,
+        ours.p999,
+        ours.worst,
+        times.mean,
+        times.p999,
+        times.worst,
+        ours.mean / times.mean,
+        ours.p999 / times.p999,
+        ours.worst / times.worst
+    );
+}
+
+fn bench<const N: usize>(name: &str, mut inputs: Vec<Input<N>>, passes: usize) {
+    let ours = summary(ours(&mut inputs, passes));
+    report(name, N, "C++", &ours, &summary(cpp(&mut inputs, passes)));
+    report(name, N, "port", &ours, &summary(port(&mut inputs, passes)));
+}
+
+/// The worst single calculation of many, chunk by chunk, so that both have the same inputs in the same stretch of time.
+fn worst(count: usize, passes: usize) {
+    const CHUNK: usize = 2000;
+    let mut random = Random(2027);
+    let (mut own, mut peers) = (Vec::new(), Vec::new());
+    while own.len() < count {
+        let size = CHUNK.min(count - own.len());
+        let mut inputs = draw(&mut random, size, Distribution::PeerTest, |_: &mut Input<6>| {});
+        own.extend(ours(&mut inputs, passes));
+        peers.extend(cpp(&mut inputs, passes));
     }
+    report("position", 6, "C++", &summary(own), &summary(peers));
 }
 
 fn symmetric<const N: usize>(
@@ -82,10 +110,19 @@ fn symmetric<const N: usize>(
     distribution: Distribution,
     change: impl Fn(&mut Input<N>),
 ) -> Vec<Input<N>> {
-    let mut random = Random(2026);
+    draw(&mut Random(2026), count, distribution, change)
+}
+
+/// Random inputs whose limits are the same in both directions, as the C++ peer's binding has them.
+fn draw<const N: usize>(
+    random: &mut Random,
+    count: usize,
+    distribution: Distribution,
+    change: impl Fn(&mut Input<N>),
+) -> Vec<Input<N>> {
     let mut inputs = Vec::new();
     while inputs.len() < count {
-        let mut input: Input<N> = random_input(&mut random, distribution);
+        let mut input: Input<N> = random_input(random, distribution);
         if input.limits.velocity_min == input.limits.velocity_max.map(|v| -v)
             && input.limits.acceleration_min == input.limits.acceleration_max.map(|a| -a)
         {
@@ -114,10 +151,15 @@ fn update(input: &Input<6>) -> f64 {
 }
 
 fn main() {
-    let argument = |index| std::env::args().nth(index).and_then(|n| n.parse().ok());
+    let only_worst = std::env::args().nth(1).is_some_and(|argument| argument == "worst");
+    let argument =
+        |index: usize| std::env::args().nth(index + usize::from(only_worst)).and_then(|n| n.parse().ok());
     let count = argument(1).unwrap_or(5000);
     let passes = argument(2).unwrap_or(9);
     println!("mean, p99.9, worst of {count} inputs, each the least of {passes} readings");
+    if only_worst {
+        return worst(count, passes);
+    }
     let same = |_: &mut _| {};
     bench::<1>("position", symmetric(count, Distribution::PeerTest, same), passes);
     bench::<3>("position", symmetric(count, Distribution::PeerTest, |_| {}), passes);
