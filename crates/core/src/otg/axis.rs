@@ -3,7 +3,7 @@
 use super::brake::Brake;
 use super::error::Error;
 use super::extremal::Problem;
-use super::fixed_duration::{Draft, Later, Piece};
+use super::fixed_duration::{Draft, Piece, Ramps};
 use super::input::{Control, Input};
 use super::number::{NOISE, between, larger};
 use super::profile::{Order, Point, Profile};
@@ -71,10 +71,9 @@ impl AxisInput {
 
 /// The motion after the brake.
 #[derive(Debug, Clone, Copy)]
-#[allow(clippy::large_enum_variant)] // There is no heap to put the large one on, and it is the usual one.
 enum Motion {
-    /// Position control with limited jerk.
-    Third(ThirdOrder),
+    /// Position control with limited jerk; and how far the displacement may be off because its ends are large.
+    Third(Problem, f64),
     /// The same from rest to rest.
     Rest(RestToRest),
     /// Position control with unlimited jerk.
@@ -91,7 +90,9 @@ pub(super) enum Solution {
     /// It is there.
     AtOnce,
     Earliest(Arrival),
-    Later(Later),
+    Ramps(Ramps),
+    /// The mixture that arrives after this time, without the brake: rare, and too large to be kept for every axis.
+    Mixture(f64),
     Second(Cruise),
     Only,
 }
@@ -183,7 +184,7 @@ impl Axis {
             return;
         }
         Brake { problem: &mut problem, profile, now: &mut self.start, scale: self.scale }.apply();
-        self.motion = Motion::Third(ThirdOrder::new(problem, NOISE * input.coordinates / self.scale));
+        self.motion = Motion::Third(problem, NOISE * input.coordinates / self.scale);
     }
 
     fn set_second_order(&mut self, input: &AxisInput, profile: &mut Profile) {
@@ -234,8 +235,8 @@ impl Axis {
         }
         let from = larger(from - self.brake, 0.0);
         let t = match &self.motion {
-            Motion::Third(third) => {
-                let arrival = third.earliest(from);
+            Motion::Third(problem, coordinates) => {
+                let arrival = ThirdOrder::new(*problem, *coordinates).earliest(from);
                 *solution = Solution::Earliest(arrival);
                 arrival.t
             }
@@ -262,7 +263,13 @@ impl Axis {
     pub(super) fn at(&self, t: f64) -> Option<Solution> {
         let t = t - self.brake;
         match &self.motion {
-            Motion::Third(third) => third.at(t).map(Solution::Later),
+            Motion::Third(problem, coordinates) => match Ramps::arriving(problem, t) {
+                Some(ramps) => Some(Solution::Ramps(ramps)),
+                None => {
+                    let possible = ThirdOrder::new(*problem, *coordinates).mixture(t);
+                    possible.map(|_| Solution::Mixture(t))
+                }
+            },
             Motion::Rest(rest) => Some(Solution::Earliest(rest.at(t))),
             Motion::Second(second) | Motion::Velocity(second) => second.at(t).map(Solution::Second),
             Motion::Only(only) => (*only == t).then_some(Solution::Only),
@@ -272,12 +279,14 @@ impl Axis {
     /// Adds the motion of a solution to the profile.
     pub(super) fn write(&self, solution: &Solution, axis: usize, profile: &mut Profile) -> Result<(), Error> {
         let joined = match (&self.motion, solution) {
-            (Motion::Third(third), Solution::Earliest(arrival)) => {
-                self.draft(profile).arrival(third.problem.a0, third.problem.af, arrival)
+            (Motion::Third(problem, _), Solution::Earliest(arrival)) => {
+                self.draft(profile).arrival(problem.a0, problem.af, arrival)
             }
             (Motion::Rest(_), Solution::Earliest(arrival)) => self.draft(profile).arrival(0.0, 0.0, arrival),
-            (Motion::Third(third), Solution::Later(later)) => {
-                self.draft(profile).later(&third.problem, later)
+            (Motion::Third(problem, _), Solution::Ramps(ramps)) => self.draft(profile).ramps(problem, ramps),
+            (Motion::Third(problem, coordinates), Solution::Mixture(t)) => {
+                let mixture = ThirdOrder::new(*problem, *coordinates).mixture(*t);
+                mixture.is_some_and(|mixture| self.draft(profile).mixture(problem, &mixture))
             }
             (Motion::Second(second), Solution::Second(cruise)) => self.write_second(second, cruise, profile),
             (Motion::Velocity(second), Solution::Second(cruise)) => {

@@ -190,7 +190,7 @@ fn one_met(p: f64, t: f64, m: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::otg::fixed_duration::Later;
+    use crate::otg::fixed_duration::Ramps;
     use crate::otg::third_order::ThirdOrder;
 
     /// Random numbers in [0, 1) (SplitMix64).
@@ -235,7 +235,7 @@ mod tests {
             assert!((first.t - expected.t).abs() <= 1e-12 * expected.t, "{first:?} {expected:?} {problem:?}");
             assert_eq!(first.sign, expected.sign);
             let t = first.t * (1.0 + (27.6 * (random.unit() - 0.75)).exp());
-            let Some(Later::Ramps(ramps)) = general.at(t) else { continue };
+            let Some(ramps) = Ramps::arriving(&problem, t) else { continue };
             let (later, w) = (own.at(t), ramps.velocity().abs());
             // The displacement says how exact the velocity can be: its slope is cruise + (x₁ + x₂)/2.
             let slope = later.shape.cruise + 0.5 * (later.shape.peak + later.shape.valley);
