@@ -27,7 +27,7 @@ impl Piece {
     }
 }
 
-/// Where a motion is written to.
+/// Where a motion is written to: a profile that knows its end.
 ///
 /// Motions are reckoned from the start up to the cruise, or to the middle if there is none, and back from the target from
 /// there, so that rounding errors do not grow with the duration.
@@ -36,8 +36,6 @@ pub(super) struct Draft<'a> {
     pub(super) profile: &'a mut Profile,
     /// State so far, in the user's units.
     pub(super) now: Point,
-    /// The state to be reached.
-    pub(super) target: Point,
     /// The jerk limit.
     pub(super) scale: f64,
     /// Of the coordinates.
@@ -59,7 +57,7 @@ impl Draft<'_> {
     /// The rest of the motion. Whether both parts meet.
     #[inline]
     fn backward<const K: usize>(&mut self, pieces: &[Piece; K]) -> bool {
-        let start = self.profile.push_backward(pieces, self.scale, self.target);
+        let start = self.profile.push_backward(pieces, self.scale);
         self.profile.joins(self.now, start, self.size)
     }
 

@@ -8,12 +8,10 @@ use super::number::{larger, smaller};
 use super::third_order::Arrival;
 use crate::math::float::{cbrt, sqrt};
 
-/// From rest to rest, seen in the direction of travel.
+/// From rest to rest, forward.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RestToRest {
-    /// The direction, 1 or −1.
-    sign: f64,
-    /// The way, ≥ 0.
+    /// ≥ 0.
     distance: f64,
     v_max: f64,
     /// Highest acceleration, > 0.
@@ -55,19 +53,16 @@ const MAX_STEPS: usize = 12;
 const LAST_STEP: f64 = 1e-6;
 
 impl RestToRest {
-    /// Of a problem the displacement and the limits.
+    /// Of a problem whose displacement is forward, the displacement and the limits.
     pub(super) fn new(problem: &Problem) -> Self {
-        let Problem { displacement, v_max, v_min, a_max, a_min, .. } = *problem;
-        if displacement < 0.0 {
-            Self { sign: -1.0, distance: -displacement, v_max: -v_min, rise: -a_min, fall: a_max }
-        } else {
-            Self { sign: 1.0, distance: displacement, v_max, rise: a_max, fall: -a_min }
-        }
+        let Problem { displacement, v_max, a_max, a_min, .. } = *problem;
+        let v_max = v_max.abs(); // a limit of zero may have either sign
+        Self { distance: displacement, v_max, rise: a_max, fall: -a_min }
     }
 
     /// The first arrival.
     pub(super) fn earliest(&self) -> Arrival {
-        let (w, p) = (self.v_max.abs(), self.distance); // a limit of zero may have either sign
+        let (w, p) = (self.v_max, self.distance);
         let limited = self.via(w, 0.0);
         let ramps = 0.5 * w * limited.t;
         if ramps <= p {
@@ -80,7 +75,7 @@ impl RestToRest {
 
     /// The arrival after the time `t`, which is not before the first.
     pub(super) fn at(&self, t: f64) -> Arrival {
-        let w = smaller(self.cruise_velocity(t), self.v_max.abs());
+        let w = smaller(self.cruise_velocity(t), self.v_max);
         let mut arrival = self.via(w, 0.0);
         // Negative by rounding only.
         arrival.shape.cruise = larger(t - arrival.t, 0.0);
@@ -101,7 +96,7 @@ impl RestToRest {
             valley: down.peak,
             valley_hold: down.hold,
         };
-        Arrival { t: up.duration() + cruise + down.duration(), sign: self.sign, shape }
+        Arrival { t: up.duration() + cruise + down.duration(), sign: 1.0, shape }
     }
 
     /// The highest velocity of the shortest motion without a velocity limit: p = w/2 · (both ramps' durations).
@@ -215,11 +210,10 @@ mod tests {
     fn problem(random: &mut Random) -> Problem {
         let time = (27.6 * (random.unit() - 0.5)).exp();
         let (p, v, a) = (time * time * time, time * time, time);
-        let sign = if random.unit() < 0.5 { 1.0 } else { -1.0 };
         let (v_max, a_max) = (random.limit(v), random.limit(a));
         let symmetric = random.unit() < 0.5;
         let (v_min, a_min) = if symmetric { (-v_max, -a_max) } else { (-random.limit(v), -random.limit(a)) };
-        let displacement = sign * p * (13.8 * (random.unit() - 0.5)).exp();
+        let displacement = p * (13.8 * (random.unit() - 0.5)).exp();
         Problem { displacement, v0: 0.0, a0: 0.0, vf: 0.0, af: 0.0, v_max, v_min, a_max, a_min }
     }
 
@@ -236,10 +230,10 @@ mod tests {
             assert_eq!(first.sign, expected.sign);
             let t = first.t * (1.0 + (27.6 * (random.unit() - 0.75)).exp());
             let Some(ramps) = Ramps::arriving(&problem, t) else { continue };
-            let (later, w) = (own.at(t), ramps.velocity().abs());
+            let (later, w) = (own.at(t), ramps.velocity());
             // The displacement says how exact the velocity can be: its slope is cruise + (x₁ + x₂)/2.
             let slope = later.shape.cruise + 0.5 * (later.shape.peak + later.shape.valley);
-            let exact = 1e-12 * (problem.displacement.abs() / slope + w);
+            let exact = 1e-12 * (problem.displacement / slope + w);
             assert!((later.shape.velocity - w).abs() <= exact, "{later:?} {ramps:?} {problem:?}");
             compared += 1;
         }
@@ -256,16 +250,11 @@ mod tests {
             let t = own.earliest().t * (1.0 + (41.4 * (random.unit() - 0.75)).exp());
             let Shape { peak, peak_hold, cruise, velocity, valley, valley_hold } = own.at(t).shape;
             let (up, down) = (2.0 * peak + peak_hold, 2.0 * valley + valley_hold);
-            let (way, asked) = (velocity * (cruise + 0.5 * (up + down)), problem.displacement.abs());
+            let (way, asked) = (velocity * (cruise + 0.5 * (up + down)), problem.displacement);
             assert!((way - asked).abs() <= 1e-11 * asked, "{way} {asked} {t} {problem:?}");
             assert!((up + cruise + down - t).abs() <= 1e-11 * t, "{up} {cruise} {down} {t} {problem:?}");
-            let forward = problem.displacement >= 0.0;
-            let (rise, fall, v_max) = if forward {
-                (problem.a_max, -problem.a_min, problem.v_max)
-            } else {
-                (-problem.a_min, problem.a_max, -problem.v_min)
-            };
-            assert!(peak <= rise && valley <= fall && velocity <= v_max, "{problem:?}");
+            let within = peak <= problem.a_max && valley <= -problem.a_min && velocity <= problem.v_max;
+            assert!(within, "{problem:?}");
             let gained = |peak: f64, hold: f64| peak * (peak + hold);
             assert!((gained(peak, peak_hold) - velocity).abs() <= 1e-12 * velocity);
             assert!((gained(valley, valley_hold) - velocity).abs() <= 1e-12 * velocity);
