@@ -71,7 +71,7 @@ use synchronize::{Demand, Plan, common_duration};
 /// demanded that is none, or a position limit would be passed.
 ///
 /// # Cost
-/// Some 2,400 instructions an axis; bounded, see `docs/otg.md`, section 12.
+/// Some 2,200 instructions an axis, from rest to rest 1,150; bounded, see `docs/otg.md`, section 12.
 pub fn calculate<const N: usize>(input: &Input<N>) -> Result<Trajectory<N>, Error> {
     let mut trajectory = Trajectory::default();
     calculate_into(input, &mut trajectory)?;

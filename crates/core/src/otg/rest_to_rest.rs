@@ -63,40 +63,40 @@ impl RestToRest {
     /// The first arrival.
     pub(super) fn earliest(&self) -> Arrival {
         let (w, p) = (self.v_max, self.distance);
-        let limited = self.via(w, 0.0);
+        let limited = self.via(w);
         let ramps = 0.5 * w * limited.t;
         if ramps <= p {
             let cruise = (p - ramps) / w; // for ever if that is zero
             Arrival { t: limited.t + cruise, shape: Shape { cruise, ..limited.shape }, ..limited }
         } else {
-            self.via(self.peak_velocity(), 0.0)
+            self.via(self.peak_velocity())
         }
     }
 
     /// The arrival after the time `t`, which is not before the first.
     pub(super) fn at(&self, t: f64) -> Arrival {
         let w = smaller(self.cruise_velocity(t), self.v_max);
-        let mut arrival = self.via(w, 0.0);
+        let mut arrival = self.via(w);
         // Negative by rounding only.
         arrival.shape.cruise = larger(t - arrival.t, 0.0);
         arrival.t = t;
         arrival
     }
 
-    /// Up to the velocity w, on at it for a time, and down again.
+    /// Up to the velocity w and down again at once.
     #[inline]
-    fn via(&self, w: f64, cruise: f64) -> Arrival {
+    fn via(&self, w: f64) -> Arrival {
         let root = sqrt(w);
         let (up, down) = (Ramp::to(w, root, self.rise), Ramp::to(w, root, self.fall));
         let shape = Shape {
             peak: up.peak,
             peak_hold: up.hold,
-            cruise,
+            cruise: 0.0,
             velocity: w,
             valley: down.peak,
             valley_hold: down.hold,
         };
-        Arrival { t: up.duration() + cruise + down.duration(), sign: 1.0, shape }
+        Arrival { t: up.duration() + down.duration(), sign: 1.0, shape }
     }
 
     /// The highest velocity of the shortest motion without a velocity limit: p = w/2 · (both ramps' durations).
@@ -114,12 +114,14 @@ impl RestToRest {
             let x = 2.0 * s / (low + sqrt(low * low + 4.0 * s));
             return x * x;
         }
-        // Both met: k w² + (a + m) w = 2p.
-        let (sum, k) = (low + high, 1.0 / low + 1.0 / high);
-        4.0 * p / (sum + sqrt(sum * sum + 8.0 * k * p))
+        // Both met: k w² + h w = 2p.
+        let (h, k) = (low + high, 1.0 / low + 1.0 / high);
+        4.0 * p / (h + sqrt(h * h + 8.0 * k * p))
     }
 
     /// The cruise velocity of the motion of duration `t`: p = w (t − half of both ramps' durations).
+    ///
+    /// m is the lower of the two acceleration limits, h their sum and k the sum of their reciprocals.
     fn cruise_velocity(&self, t: f64) -> f64 {
         let p = self.distance;
         let (low, high) = (smaller(self.rise, self.fall), larger(self.rise, self.fall));
@@ -127,9 +129,10 @@ impl RestToRest {
         if t <= 4.0 * low || p <= low * low * (t - 2.0 * low) {
             return neither_met(p, t);
         }
-        let (sum, k) = (low + high, 1.0 / low + 1.0 / high);
-        if t > sum + k * high * high && p >= high * high * (t - 0.5 * (sum + k * high * high)) {
-            both_met(p, t, sum, k)
+        let (h, k) = (low + high, 1.0 / low + 1.0 / high);
+        let ramps = h + k * high * high; // with the other limit just met too
+        if t > ramps && p >= high * high * (t - 0.5 * ramps) {
+            both_met(p, t, h, k)
         } else {
             one_met(p, t, low)
         }
@@ -153,10 +156,10 @@ fn neither_met(p: f64, t: f64) -> f64 {
     r * r * mean
 }
 
-/// Both limits met: the ramps take a + m + k w, so that the cruise c has 2kp = (t − (a + m) − c)(t + c), and 2p = w (t + c).
-fn both_met(p: f64, t: f64, sum: f64, k: f64) -> f64 {
-    let spare = larger(t * (t - sum) - 2.0 * k * p, 0.0);
-    let cruise = 2.0 * spare / (sum + sqrt(sum * sum + 4.0 * spare));
+/// Both limits met: the ramps take h + k w, so that the cruise c has 2kp = (t − h − c)(t + c), and 2p = w (t + c).
+fn both_met(p: f64, t: f64, h: f64, k: f64) -> f64 {
+    let spare = larger(t * (t - h) - 2.0 * k * p, 0.0);
+    let cruise = 2.0 * spare / (h + sqrt(h * h + 4.0 * spare));
     2.0 * p / (t + cruise)
 }
 
