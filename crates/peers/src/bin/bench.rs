@@ -27,14 +27,17 @@ fn summary(mut least: Vec<f64>) -> Times {
     Times { mean, p999: at(0.999), worst: at(1.0) }
 }
 
-fn least<T>(inputs: &mut [T], passes: usize, mut run: impl FnMut(&mut T) -> f64) -> Vec<f64> {
-    let mut best = vec![f64::INFINITY; inputs.len()];
-    for _ in 0..passes {
-        for (best, input) in best.iter_mut().zip(inputs.iter_mut()) {
-            *best = best.min(run(input));
-        }
+/// Calculations before each pass that are not read: they would be those that find another side's program in the caches.
+const WARMING: usize = 20;
+
+/// Lowers the readings to those of one more pass, where they are less.
+fn pass<T>(least: &mut [f64], inputs: &mut [T], mut run: impl FnMut(&mut T) -> f64) {
+    for input in inputs.iter_mut().take(WARMING) {
+        run(input);
     }
-    best
+    for (least, input) in least.iter_mut().zip(inputs) {
+        *least = least.min(run(input));
+    }
 }
 
 fn clocked(run: impl FnOnce()) -> f64 {
@@ -43,31 +46,33 @@ fn clocked(run: impl FnOnce()) -> f64 {
     start.elapsed().as_nanos() as f64
 }
 
-fn ours<const N: usize>(inputs: &mut [Input<N>], passes: usize) -> Vec<f64> {
-    let mut trajectory = Trajectory::default();
-    least(inputs, passes, |input| {
-        clocked(|| {
-            let _ = black_box(calculate_into(black_box(input), &mut trajectory));
-        })
-    })
-}
-
-fn cpp<const N: usize>(inputs: &mut [Input<N>], passes: usize) -> Vec<f64> {
-    let mut peer = Ruckig::new(N);
-    least(inputs, passes, |input| {
-        peer.set(input);
-        peer.timed()
-    })
-}
-
-fn port<const N: usize>(inputs: &mut [Input<N>], passes: usize) -> Vec<f64> {
-    let mut peer = RsRuckig::<N>::default();
-    least(inputs, passes, |input| {
-        peer.set(input);
-        clocked(|| {
-            black_box(peer.run());
-        })
-    })
+/// The least of several readings of each input, ours, the C++ peer's and its port's. The passes take turns, so that all sides are read in the
+/// same stretch of time.
+fn readings<const N: usize>(inputs: &mut [Input<N>], passes: usize, with_port: bool) -> [Vec<f64>; 3] {
+    let mut least = [(); 3].map(|()| vec![f64::INFINITY; inputs.len()]);
+    let [ours, cpp, port] = &mut least;
+    let (mut trajectory, mut peer, mut other) =
+        (Trajectory::default(), Ruckig::new(N), RsRuckig::<N>::default());
+    for _ in 0..passes {
+        pass(ours, inputs, |input| {
+            clocked(|| {
+                let _ = black_box(calculate_into(black_box(input), &mut trajectory));
+            })
+        });
+        pass(cpp, inputs, |input| {
+            peer.set(input);
+            peer.timed()
+        });
+        if with_port {
+            pass(port, inputs, |input| {
+                other.set(input);
+                clocked(|| {
+                    black_box(other.run());
+                })
+            });
+        }
+    }
+    least
 }
 
 fn report(name: &str, axes: usize, peer: &str, ours: &Times, times: &Times) {
@@ -86,12 +91,12 @@ fn report(name: &str, axes: usize, peer: &str, ours: &Times, times: &Times) {
 }
 
 fn bench<const N: usize>(name: &str, mut inputs: Vec<Input<N>>, passes: usize) {
-    let ours = summary(ours(&mut inputs, passes));
-    report(name, N, "C++", &ours, &summary(cpp(&mut inputs, passes)));
-    report(name, N, "port", &ours, &summary(port(&mut inputs, passes)));
+    let [ours, cpp, port] = readings(&mut inputs, passes, true).map(summary);
+    report(name, N, "C++", &ours, &cpp);
+    report(name, N, "port", &ours, &port);
 }
 
-/// The worst single calculation of many, chunk by chunk, so that both have the same inputs in the same stretch of time.
+/// The worst single calculation of many, which are drawn in chunks.
 fn worst(count: usize, passes: usize) {
     const CHUNK: usize = 2000;
     let mut random = Random(2027);
@@ -99,8 +104,9 @@ fn worst(count: usize, passes: usize) {
     while own.len() < count {
         let size = CHUNK.min(count - own.len());
         let mut inputs = draw(&mut random, size, Distribution::PeerTest, |_: &mut Input<6>| {});
-        own.extend(ours(&mut inputs, passes));
-        peers.extend(cpp(&mut inputs, passes));
+        let [ours, cpp, _] = readings(&mut inputs, passes, false);
+        own.extend(ours);
+        peers.extend(cpp);
     }
     report("position", 6, "C++", &summary(own), &summary(peers));
 }
