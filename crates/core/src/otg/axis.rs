@@ -3,10 +3,11 @@
 use super::brake::Brake;
 use super::error::Error;
 use super::extremal::Problem;
-use super::fixed_duration::{Draft, Later, Piece};
+use super::fixed_duration::{Draft, Piece, Ramps};
 use super::input::{Control, Input};
 use super::number::{NOISE, between, larger};
 use super::profile::{Order, Point, Profile};
+use super::rest_to_rest::RestToRest;
 use super::second_order::{Cruise, SecondOrder};
 use super::third_order::{Arrival, ThirdOrder};
 
@@ -49,6 +50,12 @@ impl AxisInput {
         }
     }
 
+    /// Whether the axis starts and ends at rest.
+    fn is_rest_to_rest(&self) -> bool {
+        let Self { current, target, .. } = self;
+        current.v == 0.0 && current.a == 0.0 && target.v == 0.0 && target.a == 0.0
+    }
+
     /// Whether the axis is where it is to be, but for rounding.
     ///
     /// The least duration jumps at such a state: one rounding error beyond a moving target, the axis would have to come
@@ -64,10 +71,11 @@ impl AxisInput {
 
 /// The motion after the brake.
 #[derive(Debug, Clone, Copy)]
-#[allow(clippy::large_enum_variant)] // There is no heap to put the large one on, and it is the usual one.
 enum Motion {
-    /// Position control with limited jerk.
-    Third(ThirdOrder),
+    /// Position control with limited jerk; and how far the displacement may be off because its ends are large.
+    Third(Problem, f64),
+    /// The same from rest to rest.
+    Rest(RestToRest),
     /// Position control with unlimited jerk.
     Second(SecondOrder),
     /// Velocity control: the velocity in the part of the position.
@@ -82,7 +90,9 @@ pub(super) enum Solution {
     /// It is there.
     AtOnce,
     Earliest(Arrival),
-    Later(Later),
+    Ramps(Ramps),
+    /// The mixture that arrives after this time, without the brake: rare, and too large to be kept for every axis.
+    Mixture(f64),
     Second(Cruise),
     Only,
 }
@@ -95,8 +105,7 @@ pub(super) struct Axis {
     brake: f64,
     /// State after the brake, in the user's units.
     start: Point,
-    target: Point,
-    /// The jerk limit, where the problem is normalised by it; otherwise 1.
+    /// The jerk limit, where the problem is normalised by it, negative where it is mirrored; otherwise 1.
     scale: f64,
     /// Of the coordinates.
     size: f64,
@@ -110,7 +119,6 @@ impl Axis {
         motion: Motion::Only(0.0),
         brake: 0.0,
         start: Point { p: 0.0, v: 0.0, a: 0.0 },
-        target: Point { p: 0.0, v: 0.0, a: 0.0 },
         scale: 0.0,
         size: 0.0,
         at_target: false,
@@ -120,7 +128,6 @@ impl Axis {
     /// Begins the profile with the brake, if one is needed, and makes the axis ready for the motion after it.
     pub(super) fn set(&mut self, input: &AxisInput, axis: usize, profile: &mut Profile) -> Result<(), Error> {
         self.start = input.current;
-        self.target = input.target;
         self.scale = 1.0;
         self.size = input.coordinates;
         self.at_target = input.is_at_target();
@@ -150,27 +157,39 @@ impl Axis {
         Ok(())
     }
 
-    /// The problem in units in which the jerk limit is 1.
-    fn normalised(input: &AxisInput) -> Problem {
-        let unit = 1.0 / input.jerk;
+    /// The problem in units in which the jerk limit is 1, mirrored where the way leads backward: most motions then get there by the
+    /// family that gets farthest forward.
+    fn normalise(&mut self, input: &AxisInput) -> Problem {
+        let AxisInput { current, target, .. } = input;
+        let displacement = target.p - current.p;
+        let forward = displacement >= 0.0;
+        self.scale = if forward { input.jerk } else { -input.jerk };
+        let unit = 1.0 / self.scale;
+        let limits =
+            |max: f64, min: f64| if forward { (max * unit, min * unit) } else { (min * unit, max * unit) };
+        let (v_max, v_min) = limits(input.v_max, input.v_min);
+        let (a_max, a_min) = limits(input.a_max, input.a_min);
         Problem {
-            displacement: (input.target.p - input.current.p) * unit,
-            v0: input.current.v * unit,
-            a0: input.current.a * unit,
-            vf: input.target.v * unit,
-            af: input.target.a * unit,
-            v_max: input.v_max * unit,
-            v_min: input.v_min * unit,
-            a_max: input.a_max * unit,
-            a_min: input.a_min * unit,
+            displacement: displacement * unit,
+            v0: current.v * unit,
+            a0: current.a * unit,
+            vf: target.v * unit,
+            af: target.a * unit,
+            v_max,
+            v_min,
+            a_max,
+            a_min,
         }
     }
 
     fn set_third_order(&mut self, input: &AxisInput, profile: &mut Profile) {
-        let mut problem = Self::normalised(input);
-        self.scale = input.jerk;
+        let mut problem = self.normalise(input);
+        if input.is_rest_to_rest() {
+            self.motion = Motion::Rest(RestToRest::new(&problem));
+            return;
+        }
         Brake { problem: &mut problem, profile, now: &mut self.start, scale: self.scale }.apply();
-        self.motion = Motion::Third(ThirdOrder::new(problem, NOISE * input.coordinates / self.scale));
+        self.motion = Motion::Third(problem, NOISE * input.coordinates / input.jerk);
     }
 
     fn set_second_order(&mut self, input: &AxisInput, profile: &mut Profile) {
@@ -203,8 +222,7 @@ impl Axis {
             self.motion = Motion::Velocity(jump);
             return;
         }
-        let mut problem = Self::normalised(input);
-        self.scale = input.jerk;
+        let mut problem = self.normalise(input);
         Brake { problem: &mut problem, profile, now: &mut self.start, scale: self.scale }
             .apply_acceleration();
         let Problem { v0, a0, vf, af, a_max, a_min, .. } = problem;
@@ -221,8 +239,14 @@ impl Axis {
         }
         let from = larger(from - self.brake, 0.0);
         let t = match &self.motion {
-            Motion::Third(third) => {
-                let arrival = third.earliest(from);
+            Motion::Third(problem, coordinates) => {
+                let arrival = ThirdOrder::new(*problem, *coordinates).earliest(from);
+                *solution = Solution::Earliest(arrival);
+                arrival.t
+            }
+            Motion::Rest(rest) => {
+                // Never asked for a later one: every time from the first on is possible.
+                let arrival = rest.earliest();
                 *solution = Solution::Earliest(arrival);
                 arrival.t
             }
@@ -243,7 +267,14 @@ impl Axis {
     pub(super) fn at(&self, t: f64) -> Option<Solution> {
         let t = t - self.brake;
         match &self.motion {
-            Motion::Third(third) => third.at(t).map(Solution::Later),
+            Motion::Third(problem, coordinates) => match Ramps::arriving(problem, t) {
+                Some(ramps) => Some(Solution::Ramps(ramps)),
+                None => {
+                    let possible = ThirdOrder::new(*problem, *coordinates).mixture(t);
+                    possible.map(|_| Solution::Mixture(t))
+                }
+            },
+            Motion::Rest(rest) => Some(Solution::Earliest(rest.at(t))),
             Motion::Second(second) | Motion::Velocity(second) => second.at(t).map(Solution::Second),
             Motion::Only(only) => (*only == t).then_some(Solution::Only),
         }
@@ -252,11 +283,14 @@ impl Axis {
     /// Adds the motion of a solution to the profile.
     pub(super) fn write(&self, solution: &Solution, axis: usize, profile: &mut Profile) -> Result<(), Error> {
         let joined = match (&self.motion, solution) {
-            (Motion::Third(third), Solution::Earliest(arrival)) => {
-                self.draft(profile).arrival(&third.problem, arrival)
+            (Motion::Third(problem, _), Solution::Earliest(arrival)) => {
+                self.draft(profile).arrival(problem.a0, problem.af, arrival)
             }
-            (Motion::Third(third), Solution::Later(later)) => {
-                self.draft(profile).later(&third.problem, later)
+            (Motion::Rest(_), Solution::Earliest(arrival)) => self.draft(profile).arrival(0.0, 0.0, arrival),
+            (Motion::Third(problem, _), Solution::Ramps(ramps)) => self.draft(profile).ramps(problem, ramps),
+            (Motion::Third(problem, coordinates), Solution::Mixture(t)) => {
+                let mixture = ThirdOrder::new(*problem, *coordinates).mixture(*t);
+                mixture.is_some_and(|mixture| self.draft(profile).mixture(problem, &mixture))
             }
             (Motion::Second(second), Solution::Second(cruise)) => self.write_second(second, cruise, profile),
             (Motion::Velocity(second), Solution::Second(cruise)) => {
@@ -265,7 +299,7 @@ impl Axis {
             (Motion::Only(t), Solution::Only) => self.write_only(*t, profile),
             _ => {
                 // There already: no brake either.
-                profile.begin(self.target, profile.order());
+                profile.begin(profile.target(), profile.order());
                 true
             }
         };
@@ -273,7 +307,7 @@ impl Axis {
     }
 
     fn draft<'a>(&self, profile: &'a mut Profile) -> Draft<'a> {
-        Draft { profile, now: self.start, target: self.target, scale: self.scale, size: self.size }
+        Draft { profile, now: self.start, scale: self.scale, size: self.size }
     }
 
     /// Position control without jerk limit: two ramps and a cruise.
@@ -285,7 +319,7 @@ impl Axis {
             profile.push_forward(&Piece { duration, jerk: 0.0, acceleration }, 1.0, &mut now);
             now.v = to; // jumps where the acceleration is unlimited
         }
-        profile.joins(now, Point { v: now.v, ..self.target }, self.size)
+        profile.joins(now, (profile.target().p, now.v), self.size)
     }
 
     /// Velocity control: two ramps of the acceleration and a hold, or a hold alone if the jerk is unlimited.
@@ -302,9 +336,9 @@ impl Axis {
         ] {
             profile.push_forward(&piece, self.scale, &mut now);
         }
-        let end = Point { p: now.p, ..self.target };
+        let end = Point { p: now.p, ..profile.target() };
         profile.end_at(end);
-        profile.duration() == 0.0 || profile.joins(now, end, self.size)
+        profile.duration() == 0.0 || profile.joins(now, (end.p, end.v), self.size)
     }
 
     /// The only motion that a zero limit leaves.
@@ -312,9 +346,10 @@ impl Axis {
         let mut now = self.start;
         profile.push_forward(&Piece { duration, jerk: 0.0, acceleration: now.a }, 1.0, &mut now);
         if self.velocity_control {
-            profile.end_at(Point { p: now.p, ..self.target });
+            profile.end_at(Point { p: now.p, ..profile.target() });
         }
-        profile.joins(now, self.target, self.size) || self.velocity_control
+        let target = profile.target();
+        profile.joins(now, (target.p, target.v), self.size) || self.velocity_control
     }
 }
 

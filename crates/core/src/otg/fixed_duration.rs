@@ -4,7 +4,7 @@
 //! is a weighted mean of the two extreme ones, which keeps every limit that both keep.
 
 use super::extremal::{Problem, Shape};
-use super::number::{SIXTH, larger, smaller};
+use super::number::{SIXTH, between, larger, smaller};
 use super::profile::{Point, Profile};
 use super::third_order::Arrival;
 use crate::math::float::sqrt;
@@ -27,7 +27,7 @@ impl Piece {
     }
 }
 
-/// Where a motion is written to.
+/// Where a motion is written to: a profile that knows its end.
 ///
 /// Motions are reckoned from the start up to the cruise, or to the middle if there is none, and back from the target from
 /// there, so that rounding errors do not grow with the duration.
@@ -36,8 +36,6 @@ pub(super) struct Draft<'a> {
     pub(super) profile: &'a mut Profile,
     /// State so far, in the user's units.
     pub(super) now: Point,
-    /// The state to be reached.
-    pub(super) target: Point,
     /// The jerk limit.
     pub(super) scale: f64,
     /// Of the coordinates.
@@ -59,14 +57,14 @@ impl Draft<'_> {
     /// The rest of the motion. Whether both parts meet.
     #[inline]
     fn backward<const K: usize>(&mut self, pieces: &[Piece; K]) -> bool {
-        let start = self.profile.push_backward(pieces, self.scale, self.target);
+        let start = self.profile.push_backward(pieces, self.scale);
         self.profile.joins(self.now, start, self.size)
     }
 
     /// The motion of an extreme arrival. False if the numbers have overflowed.
-    pub(super) fn arrival(&mut self, problem: &Problem, arrival: &Arrival) -> bool {
+    pub(super) fn arrival(&mut self, a0: f64, af: f64, arrival: &Arrival) -> bool {
         let Arrival { sign, shape, .. } = *arrival;
-        let motion = Extreme { shape, sign, a0: problem.a0, af: problem.af };
+        let motion = Extreme { shape, sign, a0, af };
         let [rise, hold, fall, end_of_fall, last_hold, last_rise] = motion.pieces();
         for piece in [rise, hold, fall] {
             self.forward(piece.duration, piece.jerk, piece.acceleration);
@@ -77,15 +75,8 @@ impl Draft<'_> {
         self.backward(&[end_of_fall, last_hold, last_rise])
     }
 
-    /// The motion of an arrival later than the earliest. False if the numbers have overflowed.
-    pub(super) fn later(&mut self, problem: &Problem, later: &Later) -> bool {
-        match later {
-            Later::Ramps(ramps) => self.ramps(problem, ramps),
-            Later::Mixture(mixture) => self.mixture(problem, mixture),
-        }
-    }
-
-    fn ramps(&mut self, problem: &Problem, ramps: &Ramps) -> bool {
+    /// Ramp, cruise and ramp. False if the numbers have overflowed.
+    pub(super) fn ramps(&mut self, problem: &Problem, ramps: &Ramps) -> bool {
         let Problem { a0, af, .. } = *problem;
         let Ramps { first: r1, second: r2, rest, w } = *ramps;
         self.forward(r1.x - r1.sign * a0, r1.sign, a0);
@@ -99,7 +90,8 @@ impl Draft<'_> {
         ])
     }
 
-    fn mixture(&mut self, problem: &Problem, mixture: &Mixture) -> bool {
+    /// The mean of two extreme motions. False if the numbers have overflowed.
+    pub(super) fn mixture(&mut self, problem: &Problem, mixture: &Mixture) -> bool {
         let Problem { a0, af, .. } = *problem;
         let up = Extreme { shape: mixture.up, sign: 1.0, a0, af };
         let down = Extreme { shape: mixture.down, sign: -1.0, a0, af };
@@ -112,13 +104,6 @@ impl Draft<'_> {
         let last = mean(&backwards(&up), &backwards(&down), mixture.share, half);
         self.backward(&backwards(&last))
     }
-}
-
-/// A motion that arrives later than the earliest.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Later {
-    Ramps(Ramps),
-    Mixture(Mixture),
 }
 
 /// The weighted mean of the two extreme motions of a duration.
@@ -162,25 +147,33 @@ impl Extreme {
     }
 }
 
-/// From a velocity and acceleration to a cruise in the least time.
+/// A rise and fall of the acceleration, to a cruise or from it.
 #[derive(Debug, Clone, Copy)]
-struct Ramp {
-    /// +1: first the acceleration rises.
+struct Peak {
+    /// +1: the acceleration rises first, seen from the far end of the ramp.
     sign: f64,
-    /// Magnitude of the peak acceleration.
+    /// Magnitude.
     x: f64,
     hold: f64,
-    duration: f64,
-    displacement: f64,
 }
 
 /// Ramp, cruise at w, ramp; the second ramp as seen backwards in time.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ramps {
-    first: Ramp,
-    second: Ramp,
+    first: Peak,
+    second: Peak,
     rest: f64,
     w: f64,
+}
+
+/// From a velocity and acceleration to a cruise in the least time.
+#[derive(Debug, Clone, Copy)]
+struct Ramp {
+    peak: Peak,
+    duration: f64,
+    displacement: f64,
+    /// Its part of P″, the second derivative of the whole displacement: ∓1/x at the limit, ∓3/(4x) below it.
+    curvature: f64,
 }
 
 /// Where a ramp starts, and what it may do: all that does not depend on the cruise velocity.
@@ -206,28 +199,35 @@ impl RampFrom {
         let v = self.v - sign * 0.5 * a * a; // where the first rise, drawn out, has zero acceleration
         let gain = larger(sign * (w - v), 0.0);
         let root = sqrt(gain);
-        let (x, t) = if root <= limit { (root, 2.0 * root) } else { (limit, limit + gain / limit) };
+        let (x, hold, curvature) =
+            if root <= limit { (root, 0.0, 0.75) } else { (limit, gain / limit - limit, 1.0) };
+        let t = 2.0 * x + hold;
         Ramp {
-            sign,
-            x,
-            hold: t - 2.0 * x,
+            peak: Peak { sign, x, hold },
             duration: t - sign * a,
             displacement: 0.5 * (v + w) * t - a * (sign * v + a * a * SIXTH),
+            curvature: -sign * curvature / x,
         }
     }
 }
 
-/// Most steps of the search for the cruise velocity. From a guess on the right side Newton's method converges in five or six; a search that
-/// takes longer is left to the mixture, which needs none.
+/// Most steps of the search for the cruise velocity. It mostly takes two or three; a search that takes longer is left to the mixture, which
+/// needs none.
 const MAX_STEPS: usize = 16;
-/// The step after one of size d is about d² |P″|/(2 P′), and with |P″| ≤ 1/x₁ + 1/x₂ and P′ ≥ (x₁ + x₂)/2 at most d²/(x₁ x₂).
-/// With d this fraction of x₁ x₂ it is rounding.
-const LAST_STEP: f64 = 1e-8;
+/// The step after one of size d is about d³ (P″²/(4 P′²) + |P‴|/(6 P′)). With P′ ≥ (x₁ + x₂)/2, |P″| ≤ 1/x₁ + 1/x₂ and |P‴| ≤ 3/8 (1/x₁³ + 1/x₂³)
+/// that is rounding, beside the velocities x₁² and x₂² that the ramps gain, where d is this fraction of x₁ x₂.
+const LAST_STEP: f64 = 3e-6;
 /// Displacements that differ by this fraction of their terms are one.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Ramps {
-    /// The motion by ramp, cruise and ramp that arrives after the time `t`, if Newton's method finds one.
+    /// The cruise velocity.
+    #[cfg(test)]
+    pub(super) fn velocity(&self) -> f64 {
+        self.w
+    }
+
+    /// The motion by ramp, cruise and ramp that arrives after the time `t`, if Halley's method finds one.
     ///
     /// The displacement grows with the cruise velocity w: dP/dw = t_cruise + (x₁ + x₂)/2. What is found is judged by itself: ramps that
     /// fit into the time, and a velocity within its limits, are a motion, wherever the search came from.
@@ -243,17 +243,20 @@ impl Ramps {
             let (r1, r2) = (first.to(w), second.to(w));
             let rest = t - r1.duration - r2.duration;
             let excess = r1.displacement + r2.displacement + rest * w - displacement;
-            let slope = rest + 0.5 * (r1.x + r2.x);
+            let slope = rest + 0.5 * (r1.peak.x + r2.peak.x);
             if slope <= 0.0 {
                 return None;
             }
-            let step = excess / slope;
+            let square = slope * slope;
+            let bent = square - 0.5 * excess * (r1.curvature + r2.curvature);
+            // Halley's step, within a factor of two of Newton's: the curvature is infinite where x is zero.
+            let step = excess * slope / between(bent, 0.5 * square, 2.0 * square);
             w -= step;
-            if step.abs() <= LAST_STEP * (r1.x * r2.x) || excess.abs() <= noise {
+            if step.abs() <= LAST_STEP * (r1.peak.x * r2.peak.x) || excess.abs() <= noise {
                 let (first, second) = (first.to(w), second.to(w));
                 let rest = t - first.duration - second.duration;
                 let good = rest >= 0.0 && v_min <= w && w <= v_max;
-                return good.then_some(Self { first, second, rest, w });
+                return good.then_some(Self { first: first.peak, second: second.peak, rest, w });
             }
         }
         None

@@ -9,6 +9,7 @@
 //! | `extremal` | the motions that get farthest in a given time: one family, one parameter |
 //! | `third_order` | when an axis can arrive: the least time, and the intervals in which it cannot |
 //! | `fixed_duration` | how it arrives at a given time |
+//! | `rest_to_rest` | the same for an axis that starts and ends at rest, in closed form but for one search |
 //! | `second_order` | the same one derivative down: unlimited jerk, and velocity control |
 //! | `brake` | back inside the limits first |
 //! | `axis` | one axis, whichever of these it needs |
@@ -32,6 +33,7 @@ mod input;
 mod line;
 mod number;
 mod profile;
+mod rest_to_rest;
 mod second_order;
 mod synchronize;
 mod third_order;
@@ -69,7 +71,7 @@ use synchronize::{Demand, Plan, common_duration};
 /// demanded that is none, or a position limit would be passed.
 ///
 /// # Cost
-/// Some 2,400 instructions an axis; bounded, see `docs/otg.md`, section 12.
+/// Some 2,200 instructions an axis, from rest to rest 1,150; bounded, see `docs/otg.md`, section 12.
 pub fn calculate<const N: usize>(input: &Input<N>) -> Result<Trajectory<N>, Error> {
     let mut trajectory = Trajectory::default();
     calculate_into(input, &mut trajectory)?;

@@ -113,6 +113,11 @@ impl Profile {
         (self.end, self.order) = (end.into(), order);
     }
 
+    /// The state to be reached.
+    pub(super) fn target(&self) -> Point {
+        Point { p: self.end.position, v: self.end.velocity, a: self.end.acceleration }
+    }
+
     /// Sets the state reached.
     pub(super) fn end_at(&mut self, end: Point) {
         self.end = end.into();
@@ -131,36 +136,33 @@ impl Profile {
         }
     }
 
-    /// Appends pieces that lead to the state `end`, reckoned back from there.
+    /// Appends pieces that lead to the end state, reckoned back from there. Says where they start: position and velocity.
     #[inline]
-    pub(super) fn push_backward<const K: usize>(
-        &mut self,
-        pieces: &[Piece; K],
-        scale: f64,
-        end: Point,
-    ) -> Point {
-        let mut phases = [Phase::default(); K];
-        let Point { mut p, mut v, .. } = end;
-        for (phase, piece) in phases.iter_mut().zip(pieces).rev() {
-            let t = larger(piece.duration, 0.0);
-            let (a, j) = (piece.acceleration * scale, piece.jerk * scale);
-            v -= t * (a + 0.5 * t * j);
-            p -= t * (v + t * (0.5 * a + t * j * SIXTH));
-            *phase = Phase { duration: t, position: p, velocity: v, acceleration: a, jerk: j };
-        }
-        for phase in phases {
-            if phase.duration > 0.0 {
-                self.push(phase);
+    pub(super) fn push_backward<const K: usize>(&mut self, pieces: &[Piece; K], scale: f64) -> (f64, f64) {
+        let Phase { position: mut p, velocity: mut v, .. } = self.end;
+        let mut place = self.len + pieces.iter().filter(|piece| piece.duration > 0.0).count();
+        self.len = place.min(MAX_PHASES);
+        for piece in pieces.iter().rev() {
+            let t = piece.duration;
+            if t > 0.0 {
+                let (a, j) = (piece.acceleration * scale, piece.jerk * scale);
+                v -= t * (a + 0.5 * t * j);
+                p -= t * (v + t * (0.5 * a + t * j * SIXTH));
+                place -= 1;
+                if let Some(phase) = self.phases.get_mut(place) {
+                    *phase = Phase { duration: t, position: p, velocity: v, acceleration: a, jerk: j };
+                    self.duration += t;
+                }
             }
         }
-        Point { p, v, a: phases.first().map_or(end.a, |phase| phase.acceleration) }
+        (p, v)
     }
 
     /// Whether two states of this motion that must be one are one, but for rounding. Numbers that have overflowed are not.
     /// `size` is that of the coordinates.
     #[inline]
-    pub(super) fn joins(&self, one: Point, other: Point, size: f64) -> bool {
-        let (p, v) = ((one.p - other.p).abs(), (one.v - other.v).abs());
+    pub(super) fn joins(&self, one: Point, (p, v): (f64, f64), size: f64) -> bool {
+        let (p, v) = ((one.p - p).abs(), (one.v - v).abs());
         let speed = one.v.abs() + self.end.velocity.abs();
         close(p, size + speed * self.duration) && close(v, speed) || self.joins_by_size(p, v, size)
     }

@@ -4,7 +4,7 @@
 //! holds the displacement asked for, the least duration is the first such T, and the others are found by the same test.
 
 use super::extremal::{Extremal, Family, Problem, Shape};
-use super::fixed_duration::{Later, Mixture, Ramps};
+use super::fixed_duration::Mixture;
 use super::number::{NOISE, larger};
 
 /// The axis' problem, ready to be asked when the axis can arrive.
@@ -93,11 +93,8 @@ impl ThirdOrder {
         }
     }
 
-    /// The motion that arrives after the time `t`, if there is one.
-    pub(super) fn at(&self, t: f64) -> Option<Later> {
-        if let Some(ramps) = Ramps::arriving(&self.problem, t) {
-            return Some(Later::Ramps(ramps));
-        }
+    /// The mean of the two extreme motions that arrives after the time `t`, if it is a possible one.
+    pub(super) fn mixture(&self, t: f64) -> Option<Mixture> {
         let families = self.families();
         let on_island = t < self.start.t;
         if on_island {
@@ -112,7 +109,7 @@ impl ThirdOrder {
         let possible = p <= up.p && -p <= down.p;
         possible.then(|| {
             let share = if reach > 0.0 { (p + down.p) / reach } else { 1.0 };
-            Later::Mixture(Mixture { up: families.up.shape(&up), down: families.down.shape(&down), share })
+            Mixture { up: families.up.shape(&up), down: families.down.shape(&down), share }
         })
     }
 

@@ -1,4 +1,5 @@
 //! `bench [INPUTS] [PASSES]`: time per calculation, ours and the peers', same inputs, one process.
+//! `bench worst [INPUTS] [PASSES]`: six axes, position control, ours and the C++ peer's, for as many inputs as one likes.
 //!
 //! Each input is timed on its own; of all passes the least counts, so that what other programs do to the machine does not. The C++ peer
 //! is timed inside (its own clock around the calculation), without its binding.
@@ -26,14 +27,17 @@ fn summary(mut least: Vec<f64>) -> Times {
     Times { mean, p999: at(0.999), worst: at(1.0) }
 }
 
-fn least<T>(inputs: &mut [T], passes: usize, mut run: impl FnMut(&mut T) -> f64) -> Times {
-    let mut best = vec![f64::INFINITY; inputs.len()];
-    for _ in 0..passes {
-        for (best, input) in best.iter_mut().zip(inputs.iter_mut()) {
-            *best = best.min(run(input));
-        }
+/// Calculations before each pass that are not read: they would be those that find another side's program in the caches.
+const WARMING: usize = 20;
+
+/// Lowers the readings to those of one more pass, where they are less.
+fn pass<T>(least: &mut [f64], inputs: &mut [T], mut run: impl FnMut(&mut T) -> f64) {
+    for input in inputs.iter_mut().take(WARMING) {
+        run(input);
     }
-    summary(best)
+    for (least, input) in least.iter_mut().zip(inputs) {
+        *least = least.min(run(input));
+    }
 }
 
 fn clocked(run: impl FnOnce()) -> f64 {
@@ -42,39 +46,69 @@ fn clocked(run: impl FnOnce()) -> f64 {
     start.elapsed().as_nanos() as f64
 }
 
-fn bench<const N: usize>(name: &str, mut inputs: Vec<Input<N>>, passes: usize) {
-    let mut trajectory = Trajectory::default();
-    let ours = least(&mut inputs, passes, |input| {
-        clocked(|| {
-            let _ = black_box(calculate_into(black_box(input), &mut trajectory));
-        })
-    });
-    let mut cpp = Ruckig::new(N);
-    let cpp = least(&mut inputs, passes, |input| {
-        cpp.set(input);
-        cpp.timed()
-    });
-    let mut port = RsRuckig::<N>::default();
-    let port = least(&mut inputs, passes, |input| {
-        port.set(input);
-        clocked(|| {
-            black_box(port.run());
-        })
-    });
-    for (peer, times) in [("C++", &cpp), ("port", &port)] {
-        println!(
-            "{name:32} {N} {peer:5} ours {:7.0} {:7.0} {:7.0} ns | peer {:7.0} {:7.0} {:7.0} ns | ratio {:.3} {:.3} {:.3}",
-            ours.mean,
-            ours.p999,
-            ours.worst,
-            times.mean,
-            times.p999,
-            times.worst,
-            ours.mean / times.mean,
-            ours.p999 / times.p999,
-            ours.worst / times.worst
-        );
+/// The least of several readings of each input, ours, the C++ peer's and its port's. The passes take turns, so that all sides are read in the
+/// same stretch of time.
+fn readings<const N: usize>(inputs: &mut [Input<N>], passes: usize, with_port: bool) -> [Vec<f64>; 3] {
+    let mut least = [(); 3].map(|()| vec![f64::INFINITY; inputs.len()]);
+    let [ours, cpp, port] = &mut least;
+    let (mut trajectory, mut peer, mut other) =
+        (Trajectory::default(), Ruckig::new(N), RsRuckig::<N>::default());
+    for _ in 0..passes {
+        pass(ours, inputs, |input| {
+            clocked(|| {
+                let _ = black_box(calculate_into(black_box(input), &mut trajectory));
+            })
+        });
+        pass(cpp, inputs, |input| {
+            peer.set(input);
+            peer.timed()
+        });
+        if with_port {
+            pass(port, inputs, |input| {
+                other.set(input);
+                clocked(|| {
+                    black_box(other.run());
+                })
+            });
+        }
     }
+    least
+}
+
+fn report(name: &str, axes: usize, peer: &str, ours: &Times, times: &Times) {
+    println!(
+        "{name:32} {axes} {peer:5} ours {:7.0} {:7.0} {:7.0} ns | peer {:7.0} {:7.0} {:7.0} ns | ratio {:.3} {:.3} {:.3}",
+        ours.mean,
+        ours.p999,
+        ours.worst,
+        times.mean,
+        times.p999,
+        times.worst,
+        ours.mean / times.mean,
+        ours.p999 / times.p999,
+        ours.worst / times.worst
+    );
+}
+
+fn bench<const N: usize>(name: &str, mut inputs: Vec<Input<N>>, passes: usize) {
+    let [ours, cpp, port] = readings(&mut inputs, passes, true).map(summary);
+    report(name, N, "C++", &ours, &cpp);
+    report(name, N, "port", &ours, &port);
+}
+
+/// The worst single calculation of many, which are drawn in chunks.
+fn worst(count: usize, passes: usize) {
+    const CHUNK: usize = 2000;
+    let mut random = Random(2027);
+    let (mut own, mut peers) = (Vec::new(), Vec::new());
+    while own.len() < count {
+        let size = CHUNK.min(count - own.len());
+        let mut inputs = draw(&mut random, size, Distribution::PeerTest, |_: &mut Input<6>| {});
+        let [ours, cpp, _] = readings(&mut inputs, passes, false);
+        own.extend(ours);
+        peers.extend(cpp);
+    }
+    report("position", 6, "C++", &summary(own), &summary(peers));
 }
 
 fn symmetric<const N: usize>(
@@ -82,10 +116,19 @@ fn symmetric<const N: usize>(
     distribution: Distribution,
     change: impl Fn(&mut Input<N>),
 ) -> Vec<Input<N>> {
-    let mut random = Random(2026);
+    draw(&mut Random(2026), count, distribution, change)
+}
+
+/// Random inputs whose limits are the same in both directions, as the C++ peer's binding has them.
+fn draw<const N: usize>(
+    random: &mut Random,
+    count: usize,
+    distribution: Distribution,
+    change: impl Fn(&mut Input<N>),
+) -> Vec<Input<N>> {
     let mut inputs = Vec::new();
     while inputs.len() < count {
-        let mut input: Input<N> = random_input(&mut random, distribution);
+        let mut input: Input<N> = random_input(random, distribution);
         if input.limits.velocity_min == input.limits.velocity_max.map(|v| -v)
             && input.limits.acceleration_min == input.limits.acceleration_max.map(|a| -a)
         {
@@ -114,10 +157,15 @@ fn update(input: &Input<6>) -> f64 {
 }
 
 fn main() {
-    let argument = |index| std::env::args().nth(index).and_then(|n| n.parse().ok());
+    let only_worst = std::env::args().nth(1).is_some_and(|argument| argument == "worst");
+    let argument =
+        |index: usize| std::env::args().nth(index + usize::from(only_worst)).and_then(|n| n.parse().ok());
     let count = argument(1).unwrap_or(5000);
     let passes = argument(2).unwrap_or(9);
     println!("mean, p99.9, worst of {count} inputs, each the least of {passes} readings");
+    if only_worst {
+        return worst(count, passes);
+    }
     let same = |_: &mut _| {};
     bench::<1>("position", symmetric(count, Distribution::PeerTest, same), passes);
     bench::<3>("position", symmetric(count, Distribution::PeerTest, |_| {}), passes);
