@@ -16,8 +16,7 @@
 //!
 //! The recovery is what decides how soon the arm stands: a slope is only taken if it can be taken back. It therefore
 //! goes at each step as fast towards zero as the joints permit there, not evenly, since the least u on the way
-//! would then set the pace of all of it. A stop is so within a few cycles of the best that a search over all changes
-//! of u finds.
+//! would then set the pace of all of it.
 
 use super::lookahead::Lookahead;
 use recovery::{Instant, Recovery};
@@ -129,19 +128,13 @@ impl Rate {
             return None;
         }
         let direction = missing.signum();
-        let bounds = now.bounds(view.ahead, view.limits)?;
-        let strongest = bounds.farthest(direction, now.c, view.period)?;
-        // With more than this, even a recovery in one step ends past the goal.
-        let spacing = view.ahead.spacing();
-        let landing = (goal - now.r - now.c * (view.period + spacing / 2.0))
-            / (view.period * (view.period + spacing) / 2.0);
-        let strongest = direction * (direction * strongest).min(direction * landing);
+        let strongest = view.strongest(now, goal, direction)?;
         if (strongest - at_hand) * direction <= 0.0 {
             return None;
         }
         let mut best = None;
-        let (mut near, mut near_missing) = (at_hand, missing);
-        let (mut far, mut far_missing) = (strongest, None);
+        // Curvatures with what is missing to the goal after their recovery, if there is one.
+        let (mut near, mut far) = ((at_hand, missing), (strongest, None));
         let mut trial = strongest;
         for _ in 0..TRIALS {
             let recovery = view.recovery_after(now, trial);
@@ -154,21 +147,30 @@ impl Rate {
                     if trial == strongest || left.abs() < SAME_RATE {
                         break;
                     }
-                    (near, near_missing) = (trial, left);
+                    near = (trial, left);
                 }
-                _ => (far, far_missing) = (trial, left),
+                _ => far = (trial, left),
             }
-            let share = match far_missing {
-                Some(past) if past * direction < 0.0 => near_missing / (near_missing - past),
+            let share = match far.1 {
+                Some(past) if past * direction < 0.0 => near.1 / (near.1 - past),
                 _ => 0.5,
             };
-            trial = near + (far - near) * share.clamp(0.02, 0.98);
+            trial = near.0 + (far.0 - near.0) * share.clamp(0.02, 0.98);
         }
         best
     }
 }
 
 impl<const N: usize> View<'_, N> {
+    /// The curvature farthest in a direction that the limits permit in this cycle, and that need not end past the goal.
+    fn strongest(&self, now: Instant, goal: f64, direction: f64) -> Option<f64> {
+        let permitted = now.bounds(self.ahead, self.limits)?.farthest(direction, now.c, self.period)?;
+        // With this one, a recovery in a single step ends at the goal; with more, every recovery ends past it.
+        let (period, step) = (self.period, self.ahead.spacing());
+        let landing = (goal - now.r - now.c * (period + step / 2.0)) / (period * (period + step) / 2.0);
+        Some(direction * (direction * permitted).min(direction * landing))
+    }
+
     /// The recovery after one cycle under a curvature, if that cycle and the recovery keep all limits.
     fn recovery_after(&self, now: Instant, curvature: f64) -> Option<Recovery> {
         let next = now.after(self.period, curvature);
