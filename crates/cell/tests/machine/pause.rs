@@ -1,4 +1,5 @@
-//! Pauses at random instants of random lines, beside singularities too: how soon the arm stands.
+//! Pause, resume and override at random instants of random lines, beside singularities too: how soon the rate of
+//! programme time is what was asked for, against the least time under the acceleration limits alone.
 
 use seamline::control::{Block, Command, Event, Mode, Motion};
 use seamline::kinematics::{JointJet, Kinematics};
@@ -90,106 +91,194 @@ fn along(blocks: &[Block<6>], mut time: f64) -> Option<(PathState, f64)> {
     None
 }
 
-/// Least time to stand under the acceleration limits alone, by small steps, from full rate at `now`.
-fn second_order_stop(blocks: &[Block<6>], mut now: f64, arm: &Ar2010, mut seed: [f64; 6]) -> f64 {
+/// Programme time at a rate on a line.
+#[derive(Clone, Copy)]
+struct Clock {
+    now: f64,
+    rate: f64,
+}
+
+/// Least time to another rate under the acceleration limits alone, by small steps; less where the line ends first.
+fn second_order(blocks: &[Block<6>], mut clock: Clock, goal: f64, arm: &Ar2010, mut seed: [f64; 6]) -> f64 {
     const STEP: f64 = 1e-4;
-    let (mut rate, mut time) = (1.0_f64, 0.0);
-    while rate > 0.0 {
-        let Some(jet) = joints(blocks, now, arm, &seed) else { return time };
+    let direction = (goal - clock.rate).signum();
+    let mut time = 0.0;
+    while (goal - clock.rate) * direction > 0.0 {
+        let Some(jet) = joints(blocks, clock.now, arm, &seed) else { return time };
         seed = jet.position;
-        let mut slope = f64::NEG_INFINITY;
-        for (axis, limit) in arm.limits.acceleration.into_iter().enumerate() {
-            let (v, a) = (jet.velocity[axis], jet.acceleration[axis] * rate * rate);
-            if v != 0.0 {
-                slope = slope.max((-limit - a * v.signum()) / v.abs());
+        let mut slope = f64::INFINITY;
+        let mut limit = |velocity: f64, acceleration: f64, limit: f64| {
+            let planned = direction * acceleration * clock.rate * clock.rate;
+            slope = slope.min((limit - planned * velocity.signum()) / velocity.abs());
+        };
+        for axis in 0..6 {
+            if jet.velocity[axis] != 0.0 {
+                limit(jet.velocity[axis], jet.acceleration[axis], arm.limits.acceleration[axis]);
             }
         }
-        if let Some((state, limit)) = along(blocks, now) {
-            slope = slope.max((-limit - state.acceleration * rate * rate) / state.velocity);
+        if let Some((state, most)) = along(blocks, clock.now) {
+            limit(state.velocity, state.acceleration, most);
         }
-        now += rate * STEP;
-        rate += (slope * STEP).max(-rate);
+        clock.now += clock.rate * STEP;
+        clock.rate += direction * (slope.max(0.0) * STEP).min((goal - clock.rate).abs());
         time += STEP;
     }
     time
 }
 
-/// One pause: time to stand beyond the second-order least, and the commands' shares of the limits.
-fn pause(random: &mut Random, case: usize, cell: &Cell, arm: &Ar2010) -> (f64, [f64; 3]) {
-    let (mut commands, start, duration) = random_line(random, case, cell, arm);
-    let as_block = |command: &Command<6>| match command {
-        Command::Move(block) => Some(*block),
-        _ => None,
-    };
-    let blocks: Vec<_> = commands.iter().filter_map(as_block).collect();
-    commands.push(Command::End);
-    let mut here = arm.clone();
-    here.home = start;
-    let drive = SimulatedDrive::new([Servo::IDEAL; 6], start);
-    let mut bench = Bench::with_drive(cell, &here, drive, commands);
-    bench.cycle_with(Event::Start);
-    let mut rows = Vec::new();
-    let before = (random.unit() * duration / bench.period) as usize;
-    (0..before).for_each(|_| rows.push(bench.cycle().command.position));
-    let now = (before + 1) as f64 * bench.period;
-    let seed = rows.last().copied().unwrap_or(start);
-    let least = second_order_stop(&blocks, now, arm, seed);
-    if bench.cycle.mode() != Mode::Running {
-        return (0.0, [0.0; 3]);
-    }
-    bench.input.event = Some(Event::Hold);
-    let mut stopping = 0_u32;
-    loop {
-        let output = bench.cycle();
-        rows.push(output.command.position);
-        stopping += 1;
-        assert!(stopping < 5_000, "case {case}: it must stand");
-        if output.status.at_rest {
-            break;
-        }
-    }
-    if bench.cycle.mode() == Mode::Holding {
-        bench.input.event = Some(Event::Resume);
-        (0..200).for_each(|_| rows.push(bench.cycle().command.position));
-    }
-    (f64::from(stopping) * bench.period - least, worst_shares(&rows, arm, bench.period))
+/// A line under way.
+struct Ride<'a> {
+    arm: &'a Ar2010,
+    bench: Bench,
+    blocks: Vec<Block<6>>,
+    clock: Clock,
+    at_rest: bool,
+    /// Commanded joints, cycle by cycle.
+    rows: Vec<[f64; 6]>,
 }
 
-fn pauses(count: usize) -> Vec<f64> {
-    let cell = Cell::default_cell().unwrap();
-    let arm = Arm::from_cell(&cell).unwrap();
-    let mut random = Random(1);
-    let mut excess = Vec::new();
-    for case in 0..count {
-        let (beyond, [velocity, acceleration, jerk]) = pause(&mut random, case, &cell, &arm);
+impl<'a> Ride<'a> {
+    /// At an instant of the line, at full rate.
+    fn at(instant: f64, commands: &[Command<6>], start: [f64; 6], cell: &Cell, arm: &'a Ar2010) -> Self {
+        let as_block = |command: &Command<6>| match command {
+            Command::Move(block) => Some(*block),
+            _ => None,
+        };
+        let blocks = commands.iter().filter_map(as_block).collect();
+        let mut here = arm.clone();
+        here.home = start;
+        let drive = SimulatedDrive::new([Servo::IDEAL; 6], start);
+        let bench = Bench::with_drive(cell, &here, drive, [commands, &[Command::End]].concat());
+        let clock = Clock { now: 0.0, rate: 1.0 };
+        let mut ride = Self { arm, bench, blocks, clock, at_rest: false, rows: vec![start; 3] };
+        ride.bench.input.event = Some(Event::Start);
+        ride.cycle();
+        while ride.clock.now < instant {
+            ride.cycle();
+        }
+        ride
+    }
+
+    fn cycle(&mut self) {
+        let output = self.bench.cycle();
+        self.rows.push(output.command.position);
+        self.at_rest = output.status.at_rest;
+        let rate = output.status.rate;
+        self.clock.now += (self.clock.rate + rate) / 2.0 * self.bench.period;
+        self.clock.rate = rate;
+    }
+
+    /// Until the rate is `goal`, or the arm stands at the line's end where it was to stand anyway: the time beyond the
+    /// second-order least. `None` where the line ends before.
+    fn reach(&mut self, goal: f64) -> Option<f64> {
+        let seed = *self.rows.last()?;
+        let least = second_order(&self.blocks, self.clock, goal, self.arm, seed);
+        let mut cycles = 0_u32;
+        while self.clock.rate != goal {
+            self.cycle();
+            cycles += 1;
+            assert!(cycles < 5_000, "the rate must reach {goal}, and is {}", self.clock.rate);
+            if self.at_rest {
+                // At the line's end, which is as good where it was to stand.
+                if goal > 0.0 {
+                    return None;
+                }
+                break;
+            }
+        }
+        Some(f64::from(cycles) * self.bench.period - least)
+    }
+}
+
+/// What is asked for, with the times beyond the second-order least.
+const ASKED: [&str; 4] = ["pause", "resume", "override to 30 %", "override back to 100 %"];
+
+#[derive(Default)]
+struct Figures {
+    beyond: [Vec<f64>; 4],
+    shares: [f64; 3],
+}
+
+impl Figures {
+    /// Lines from a seed, each paused and resumed, and once more slowed down and sped up.
+    fn of(seed: u64, lines: usize) -> Self {
+        let cell = Cell::default_cell().unwrap();
+        let arm = Arm::from_cell(&cell).unwrap();
+        let mut random = Random(seed);
+        let mut figures = Self::default();
+        for case in 0..lines {
+            let (commands, start, duration) = random_line(&mut random, case, &cell, &arm);
+            let instant = random.unit() * duration;
+            let ride = || Ride::at(instant, &commands, start, &cell, &arm);
+            figures.take(case, ride(), 0, |bench, goal| {
+                bench.input.event = Some(if goal == 0.0 { Event::Hold } else { Event::Resume });
+            });
+            figures.take(case, ride(), 2, |bench, goal| bench.input.speed_override = goal);
+        }
+        for times in &mut figures.beyond {
+            times.sort_by(f64::total_cmp);
+        }
+        figures
+    }
+
+    /// Down to a rate (kind 0: pause, kind 2: override) and up again, and to the end or 0.2 s more.
+    fn take(&mut self, case: usize, mut ride: Ride<'_>, kind: usize, ask: impl Fn(&mut Bench, f64)) {
+        for (kind, goal) in [(kind, [0.0, 0.0, 0.3][kind]), (kind + 1, 1.0)] {
+            if ride.bench.cycle.mode() == Mode::Standstill {
+                break;
+            }
+            ask(&mut ride.bench, goal);
+            self.beyond[kind].extend(ride.reach(goal));
+        }
+        (0..200).for_each(|_| ride.cycle());
+        let shares @ [velocity, acceleration, jerk] = worst_shares(&ride.rows, ride.arm, ride.bench.period);
         assert!(
             velocity <= 1.0 + 1e-6 && acceleration <= 1.001 && jerk <= 1.01,
-            "case {case}: {velocity} {acceleration} {jerk}"
+            "line {case}, {}: shares {shares:?}",
+            ASKED[kind]
         );
-        excess.push(beyond);
+        self.shares = std::array::from_fn(|k| self.shares[k].max(shares[k]));
     }
-    excess.sort_by(f64::total_cmp);
-    let at = |share: f64| excess[((count - 1) as f64 * share) as usize] * 1e3;
-    println!(
-        "{count} pauses, beyond the second-order stop: median {:.1} ms, 90 % {:.1}, 99 % {:.1}, greatest {:.1}",
-        at(0.5),
-        at(0.9),
-        at(0.99),
-        at(1.0)
-    );
-    excess
+
+    fn at(&self, kind: usize, share: f64) -> f64 {
+        let times = &self.beyond[kind];
+        times[((times.len() - 1) as f64 * share) as usize]
+    }
+
+    fn print(&self) {
+        println!("beyond the second-order least time, in ms:");
+        for (kind, asked) in ASKED.iter().enumerate() {
+            let [median, p90, p99, most] = [0.5, 0.9, 0.99, 1.0].map(|share| self.at(kind, share) * 1e3);
+            let count = self.beyond[kind].len();
+            println!(
+                "{asked}, {count}: median {median:.1}, 90 % {p90:.1}, 99 % {p99:.1}, greatest {most:.1}"
+            );
+        }
+        println!("greatest shares of velocity, acceleration, jerk: {:.4?}", self.shares);
+    }
 }
 
-/// 150 lines, each paused once and resumed: it stands, soon, and every limit holds.
-#[test]
-fn a_line_pauses_soon_and_within_its_limits() {
-    let excess = pauses(150);
-    assert!(excess[75] < 0.04 && excess[149] < 0.2);
+/// Median at most 20 ms and the rest at most 60 ms beyond the second-order least time, but for one in a hundred: a
+/// plan that uses two joints' jerks fully, in opposite senses, leaves the rate no choice until one of them lets go, which
+/// the second order does not know of.
+fn judge(figures: &Figures) {
+    figures.print();
+    for (kind, asked) in ASKED.iter().enumerate() {
+        assert!(figures.at(kind, 0.5) <= 0.020, "{asked}: median");
+        assert!(figures.at(kind, 0.99) <= 0.060, "{asked}: 99 %");
+    }
 }
 
-/// The same with 1,000: `cargo test --release -p seamline-cell --test machine a_thousand -- --ignored --nocapture`.
+/// 60 lines: soon at the rate asked for, and within all limits.
 #[test]
-#[ignore = "takes minutes without optimization"]
+fn a_line_changes_its_rate_soon_and_within_its_limits() {
+    judge(&Figures::of(1, 60));
+}
+
+/// The same with 1,000 lines of each of three seeds:
+/// `cargo test --release -p seamline-cell --test machine a_thousand -- --ignored --nocapture`.
+#[test]
+#[ignore = "takes minutes"]
 fn a_thousand_pauses() {
-    pauses(1_000);
+    (1..=3).for_each(|seed| judge(&Figures::of(seed, 1_000)));
 }

@@ -6,14 +6,23 @@
 //! q̇ = q′ r        q̈ = q″ r² + q′ c        q⃛ = q‴ r³ + 3 q″ r c + q′ u,   u = ċ
 //! ```
 //!
-//! and the path coordinate likewise, as one more axis with the cell's limits for the tool.
+//! and the path coordinate likewise, as one more axis with the cell's limits for the tool. At each instant the limits
+//! are thus an interval for c and, with c known, an interval for u.
 //!
 //! The planned motion keeps every limit at r = 1, so that any *constant* r ≤ 1 keeps them too. The slope is what must
-//! be watched. At every instant a way back to a constant rate is at hand, already checked against the motion ahead:
-//! the slope goes linearly to zero within `recovery`. In each cycle the strongest change of u is looked for, for which
-//! such a way exists again; where none is found, the way at hand is followed. So there is always an answer.
+//! be watched. At every instant a recovery is at hand, a way back to a constant rate that is already checked against
+//! the motion ahead. In each cycle the strongest change of u is looked for, after which a recovery exists again and
+//! ends nearer to the goal; where there is none, the one at hand is followed. So there is always an answer.
+//!
+//! The recovery is what decides how soon the arm stands: a slope is only taken if it can be taken back. It therefore
+//! goes at each step as fast towards zero as the joints permit there, not evenly, since the least u on the way
+//! would then set the pace of all of it.
 
-use super::lookahead::{Between, JointMotion, Lookahead};
+use super::lookahead::Lookahead;
+use recovery::{Instant, Recovery};
+
+mod bounds;
+mod recovery;
 
 /// Limits of the joints, per axis, all positive: velocity is kept by the plan, since r ≤ 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,31 +31,33 @@ pub(super) struct RateLimits<const N: usize> {
     pub(super) jerk: [f64; N],
 }
 
-/// Share of a limit that changes of the rate may use, so that interpolating between samples cannot pass the limit.
-const ACCELERATION_SHARE: f64 = 0.99;
-const JERK_SHARE: f64 = 0.98;
-/// Bound on u: where nothing moves, a full change of the rate still takes about 4 ms.
-const CURVATURE_MAX: f64 = 2.5e5;
 /// Rates closer than this are one.
 const SAME_RATE: f64 = 1e-9;
-/// Recoveries that are tried, shortest first, in samples of the look-ahead.
-const RECOVERIES: [u8; 13] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 40, 52, 64];
-/// Shares of the strongest change that are tried, in this order.
-const SHARES: [f64; 5] = [1.0, 0.7, 0.4, 0.2, 0.05];
+/// Curvatures that are tried in one cycle.
+const TRIALS: usize = 7;
 
 /// The rate and its slope, with the way back to a constant rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rate {
     value: f64,
     slope: f64,
-    /// Time in which the slope goes linearly to zero, unless something better is found.
-    recovery: f64,
+    /// What happens unless something better is found.
+    recovery: Recovery,
+    /// Cycles for which it has been followed.
+    followed: usize,
+}
+
+/// What a cycle looks at: the motion ahead, the limits on it, and its own length.
+struct View<'a, const N: usize> {
+    ahead: &'a Lookahead<N>,
+    limits: &'a RateLimits<N>,
+    period: f64,
 }
 
 impl Rate {
     /// A constant rate in [0, 1].
     pub(super) fn constant(value: f64) -> Self {
-        Self { value, slope: 0.0, recovery: 0.0 }
+        Self { value, slope: 0.0, recovery: Recovery::none(value), followed: 0 }
     }
 
     /// τ̇, 0 … 1.
@@ -66,7 +77,7 @@ impl Rate {
 
     /// One cycle on towards `goal` (0 … 1), from programme time `now`; returns by how much programme time advances.
     ///
-    /// Cost: at most `RECOVERIES × SHARES` checks of at most 64 samples, usually one or two, and none at the goal.
+    /// Cost: at most `TRIALS` recoveries, each of at most 64 steps but usually of 5 to 25, and none at the goal.
     pub(super) fn advance<const N: usize>(
         &mut self,
         goal: f64,
@@ -75,186 +86,97 @@ impl Rate {
         limits: &RateLimits<N>,
         period: f64,
     ) -> f64 {
-        let better = self.search(goal, now, ahead, limits, period);
-        let (curvature, recovery) = better.unwrap_or_else(|| {
-            let curvature = if self.recovery > 0.0 { -self.slope / self.recovery } else { 0.0 };
-            (curvature, self.recovery - period)
-        });
-        let advance = self.integral(curvature, period);
-        self.value += self.slope * period + curvature * period * period / 2.0;
-        self.slope += curvature * period;
-        self.recovery = recovery;
-        if recovery < period * 0.5 {
-            (self.slope, self.recovery) = (0.0, 0.0);
+        let now = Instant { time: now, r: self.value, c: self.slope };
+        let view = View { ahead, limits, period };
+        let at_hand = self.at_hand(&view);
+        let better = self.search(goal, now, at_hand.unwrap_or(0.0), &view);
+        let next = now.after(period, better.map_or(at_hand.unwrap_or(0.0), |(curvature, _)| curvature));
+        (self.value, self.slope) = (next.r, next.c);
+        self.followed += 1;
+        if let Some((_, recovery)) = better {
+            (self.recovery, self.followed) = (recovery, 0);
         }
-        if self.slope == 0.0 && (self.value - goal).abs() < SAME_RATE {
-            self.value = goal;
+        if self.at_hand(&view).is_none() {
+            let reached = if (next.r - goal).abs() < SAME_RATE { goal } else { next.r };
+            // Rounding must not leave a constant rate below standstill or above full speed.
+            *self = Self::constant(reached.clamp(0.0, 1.0));
         }
-        // Rounding must not run time backwards or above full speed.
-        self.value = self.value.clamp(0.0, 1.0);
-        advance.max(0.0)
+        (next.time - now.time).max(0.0)
     }
 
-    /// The strongest change of the slope towards the goal from which a recovery exists: (curvature, recovery).
+    /// The curvature that the recovery at hand has for this cycle; `None` where it is over.
+    fn at_hand<const N: usize>(&self, view: &View<'_, N>) -> Option<f64> {
+        // A step is a whole number of cycles.
+        let cycles = (view.ahead.spacing() / view.period + 0.5) as usize;
+        self.recovery.curvature(self.followed / cycles.max(1))
+    }
+
+    /// The strongest change of the slope towards the goal after which a recovery exists, and that recovery.
+    ///
+    /// It lies between what is at hand, which recovers short of the goal, and the strongest that the limits permit in
+    /// this cycle. That one is tried first. If it does not recover, or only past the goal, the interval is halved, or
+    /// divided where the goal should be met.
     fn search<const N: usize>(
         &self,
         goal: f64,
-        now: f64,
-        ahead: &Lookahead<N>,
-        limits: &RateLimits<N>,
-        period: f64,
-    ) -> Option<(f64, f64)> {
-        let missing = goal - (self.value + self.slope * self.recovery / 2.0);
+        now: Instant,
+        at_hand: f64,
+        view: &View<'_, N>,
+    ) -> Option<(f64, Recovery)> {
+        let missing = goal - self.recovery.end();
         if missing.abs() < SAME_RATE {
             return None;
         }
-        let here = ahead.around(now)?;
-        let strongest = self.strongest(missing.signum(), &here, limits, period);
-        if strongest * missing <= 0.0 {
+        let direction = missing.signum();
+        let strongest = view.strongest(now, goal, direction)?;
+        if (strongest - at_hand) * direction <= 0.0 {
             return None;
         }
-        for share in SHARES {
-            for samples in RECOVERIES {
-                let recovery = f64::from(samples) * ahead.spacing();
-                // The curvature with which this recovery ends exactly at the goal.
-                let landing = (goal - self.value - self.slope * (period + recovery / 2.0))
-                    / (period * (period + recovery) / 2.0);
-                let most = share * strongest;
-                let curvature = if most > 0.0 { landing.min(most) } else { landing.max(most) };
-                let overshoots = landing * missing < 0.0;
-                if !overshoots && self.recovers(curvature, samples, now, ahead, limits, period) {
-                    return Some((curvature, recovery));
+        let mut best = None;
+        // Curvatures with what is missing to the goal after their recovery, if there is one.
+        let (mut near, mut far) = ((at_hand, missing), (strongest, None));
+        let mut trial = strongest;
+        for _ in 0..TRIALS {
+            let recovery = view.recovery_after(now, trial);
+            let left = recovery.map(|recovery| goal - recovery.end());
+            match (recovery, left) {
+                (Some(recovery), Some(left))
+                    if left * direction > -SAME_RATE && left.abs() < missing.abs() =>
+                {
+                    best = Some((trial, recovery));
+                    if trial == strongest || left.abs() < SAME_RATE {
+                        break;
+                    }
+                    near = (trial, left);
                 }
+                _ => far = (trial, left),
             }
+            let share = match far.1 {
+                Some(past) if past * direction < 0.0 => near.1 / (near.1 - past),
+                _ => 0.5,
+            };
+            trial = near.0 + (far.0 - near.0) * share.clamp(0.02, 0.98);
         }
-        None
-    }
-
-    /// The largest u in a direction (+1, −1) that the jerk limits now and the acceleration limits one cycle on allow.
-    fn strongest<const N: usize>(
-        &self,
-        direction: f64,
-        here: &Between<'_, N>,
-        limits: &RateLimits<N>,
-        period: f64,
-    ) -> f64 {
-        let r = self.value;
-        let mut strongest = CURVATURE_MAX;
-        for axis in 0..=N {
-            let motion = here.axis(axis, limits);
-            let velocity = direction * motion.velocity;
-            if velocity == 0.0 {
-                continue;
-            }
-            // Both limits read |fixed + velocity·x| ≤ bound for x = direction·u ≥ 0: the nearer end counts.
-            let most = |fixed: f64, bound: f64| (bound - fixed * velocity.signum()) / velocity.abs();
-            let acceleration = motion.acceleration * r * r;
-            let bound = (ACCELERATION_SHARE * motion.acceleration_limit).max(acceleration.abs());
-            let slope = direction * self.slope;
-            strongest = strongest.min((most(acceleration, bound) - slope) / period);
-            for planned in motion.jerk {
-                let planned = planned * r * r * r;
-                let bound = (JERK_SHARE * motion.jerk_limit).max(planned.abs());
-                let fixed = planned + 3.0 * motion.acceleration * r * self.slope;
-                strongest = strongest.min(most(fixed, bound));
-            }
-        }
-        direction * strongest
-    }
-
-    /// Programme time that passes in `time` under constant curvature.
-    fn integral(&self, curvature: f64, time: f64) -> f64 {
-        time * (self.value + time * (self.slope / 2.0 + time * curvature / 6.0))
-    }
-
-    /// Whether all limits hold if `curvature` acts for one period and the slope then goes linearly to zero.
-    fn recovers<const N: usize>(
-        &self,
-        curvature: f64,
-        samples: u8,
-        now: f64,
-        ahead: &Lookahead<N>,
-        limits: &RateLimits<N>,
-        period: f64,
-    ) -> bool {
-        let within = |time: f64, r: f64, c: f64, u: f64| {
-            ahead.around(time).is_some_and(|between| between.keeps(r, c, u, limits))
-        };
-        let start = now + self.integral(curvature, period);
-        let r = self.value + self.slope * period + curvature * period * period / 2.0;
-        let c = self.slope + curvature * period;
-        let recovery = f64::from(samples) * ahead.spacing();
-        let back = -c / recovery;
-        let end = r + c * recovery / 2.0;
-        if !(-SAME_RATE..=1.0 + SAME_RATE).contains(&end) || !within(start, r, c, curvature) {
-            return false;
-        }
-        (0..=samples).all(|k| {
-            let t = f64::from(k) * ahead.spacing();
-            let time = start + r * t + c * t * t / 2.0 + back * t * t * t / 6.0;
-            within(time, r + c * t + back * t * t / 2.0, c + back * t, back)
-        })
+        best
     }
 }
 
-/// One axis between two samples: a joint, or the path coordinate.
-#[derive(Debug, Clone, Copy)]
-struct Axis {
-    velocity: f64,
-    acceleration: f64,
-    /// Of both samples: between them it may switch.
-    jerk: [f64; 2],
-    acceleration_limit: f64,
-    jerk_limit: f64,
-}
-
-impl<const N: usize> Between<'_, N> {
-    /// Joint `k`, or with k = N the path coordinate.
-    fn axis(&self, k: usize, limits: &RateLimits<N>) -> Axis {
-        let pick = |sample: &JointMotion<N>| {
-            if k < N {
-                (sample.velocity[k], sample.acceleration[k], sample.jerk[k])
-            } else {
-                (sample.path.velocity, sample.path.acceleration, sample.path.jerk)
-            }
-        };
-        let (left, right) = (pick(self.left), pick(self.right));
-        let (acceleration_limit, jerk_limit) = if k < N {
-            (limits.acceleration[k], limits.jerk[k])
-        } else {
-            let (left, right) = (&self.left.path, &self.right.path);
-            (left.acceleration_limit.min(right.acceleration_limit), left.jerk_limit.min(right.jerk_limit))
-        };
-        Axis {
-            velocity: left.0 + (right.0 - left.0) * self.fraction,
-            acceleration: self.acceleration((left.1, left.2), (right.1, right.2)),
-            jerk: [left.2, right.2],
-            acceleration_limit,
-            jerk_limit,
-        }
+impl<const N: usize> View<'_, N> {
+    /// The curvature farthest in a direction that the limits permit in this cycle, and that need not end past the goal.
+    fn strongest(&self, now: Instant, goal: f64, direction: f64) -> Option<f64> {
+        let permitted = now.bounds(self.ahead, self.limits)?.farthest(direction, now.c, self.period)?;
+        // With this one, a recovery in a single step ends at the goal; with more, every recovery ends past it.
+        let (period, step) = (self.period, self.ahead.spacing());
+        let landing = (goal - now.r - now.c * (period + step / 2.0)) / (period * (period + step) / 2.0);
+        Some(direction * (direction * permitted).min(direction * landing))
     }
 
-    /// From acceleration and jerk of both samples; exact where the jerk is constant but for one switch between them.
-    fn acceleration(&self, left: (f64, f64), right: (f64, f64)) -> f64 {
-        let from_left = left.0 + left.1 * self.fraction * self.spacing;
-        let from_right = right.0 - right.1 * (1.0 - self.fraction) * self.spacing;
-        if left.1 > right.1 { from_left.min(from_right) } else { from_left.max(from_right) }
-    }
-
-    /// Whether rate r with slope c and curvature u keeps acceleration and jerk of every axis here. What the plan itself
-    /// uses is always allowed: a constant rate below 1 is.
-    fn keeps(&self, r: f64, c: f64, u: f64, limits: &RateLimits<N>) -> bool {
-        (0..=N).all(|k| {
-            let axis = self.axis(k, limits);
-            let planned = axis.acceleration * r * r;
-            let bound = (ACCELERATION_SHARE * axis.acceleration_limit).max(planned.abs());
-            (planned + axis.velocity * c).abs() <= bound
-                && axis.jerk.into_iter().all(|jerk| {
-                    let planned = jerk * r * r * r;
-                    let bound = (JERK_SHARE * axis.jerk_limit).max(planned.abs());
-                    (planned + 3.0 * axis.acceleration * r * c + axis.velocity * u).abs() <= bound
-                })
-        })
+    /// The recovery after one cycle under a curvature, if that cycle and the recovery keep all limits.
+    fn recovery_after(&self, now: Instant, curvature: f64) -> Option<Recovery> {
+        let next = now.after(self.period, curvature);
+        let bounds = next.bounds(self.ahead, self.limits)?;
+        let keeps = bounds.slope.contains(next.c) && bounds.curvature.contains(curvature);
+        if keeps { Recovery::from(next, self.ahead, self.limits) } else { None }
     }
 }
 

@@ -1,6 +1,6 @@
 use std::vec::Vec;
 
-use super::super::lookahead::AlongPath;
+use super::super::lookahead::{AlongPath, JointMotion};
 use super::*;
 
 const PERIOD: f64 = 1e-3;
@@ -138,6 +138,7 @@ impl<'a> Simulation<'a> {
         }
         let limits = RateLimits { acceleration: ACCELERATION, jerk: JERK };
         self.now += self.rate.advance(goal, self.now, &self.ahead, &limits, PERIOD);
+        assert!((-1e-8..=1.0 + 1e-8).contains(&self.rate.value), "rate {}", self.rate.value);
         self.commands.push(self.plan.at(self.now).map(|axis| axis[0]));
     }
 
@@ -173,7 +174,7 @@ fn override_and_pause_keep_the_joint_limits() {
         }
         let (acceleration, jerk) = simulation.worst();
         assert!(acceleration < 1.000_001, "case {case}: acceleration {acceleration}");
-        assert!(jerk < 1.000_1, "case {case}: jerk {jerk}");
+        assert!(jerk < 1.005, "case {case}: jerk {jerk}");
     }
 }
 
@@ -203,12 +204,15 @@ fn stops(in_step: bool) -> Vec<f64> {
     excess
 }
 
+/// Every axis reaches its acceleration in 20 ms. A stop from constant speed needs that time beyond the second-order
+/// one, and a stop from full acceleration 50 ms; a cycle and the share kept back come on top.
 #[test]
 fn a_pause_stops_soon() {
     let excess = stops(true);
-    assert!(excess[150] < 0.03 && excess[299] < 0.1);
+    assert!(excess[150] < 0.022 && excess[299] < 0.06);
+    // Out of step the axes hinder one another: jerks that all are used up leave the rate no choice.
     let excess = stops(false);
-    assert!(excess[150] < 0.1 && excess[299] < 0.5);
+    assert!(excess[150] < 0.06 && excess[299] < 0.4);
 }
 
 #[test]
