@@ -1,3 +1,8 @@
+//! Lines, arcs, blends and splines as functions of their coordinate.
+
+mod quintic;
+mod random;
+
 use super::*;
 use crate::geometry::{Rotation, Vector3};
 
