@@ -51,6 +51,7 @@ pub struct Arc {
 }
 
 /// Position and its first three derivatives with respect to arc length.
+#[derive(Clone, Copy)]
 pub(super) struct PointJet {
     position: Vector3,
     derivatives: [Vector3; 3],

@@ -8,11 +8,13 @@
 //! and turning rate go on from one path's into the next one's, so that the joints' accelerations do not step.
 
 mod blend;
+pub mod corner;
 mod curve;
 mod orientation;
 mod quintic;
 mod quintic_turn;
 mod rotation_vector;
+mod spline;
 mod timing;
 
 pub use blend::BlendError;
@@ -20,6 +22,7 @@ pub use curve::{Arc, ArcError, Curve};
 pub use orientation::{Geodesic, Orientation, Through};
 pub use quintic::Quintic;
 pub use quintic_turn::QuinticTurn;
+pub use spline::{SplineError, spline};
 pub use timing::{PathState, TimingPiece};
 
 use crate::geometry::{Pose, PoseJet, Rotation};
@@ -163,6 +166,10 @@ impl Path {
         .into_parts();
         let (rotation, angular) = self.orientation.at(s, self.length);
         PoseJet { pose: Pose::from_parts(position.into(), rotation), linear, angular }
+    }
+
+    fn rotation(&self, s: f64) -> Rotation {
+        self.orientation.at(s, self.length).0
     }
 
     /// The pose at coordinate `s`.
