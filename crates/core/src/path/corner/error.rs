@@ -1,9 +1,11 @@
 //! How far a blend lies from the corner, and from the paths that it joins.
 
+use core::f64::consts::PI;
+
 use super::super::quintic::{derivatives, foot};
 use super::super::{Arc, Curve, Path};
 use crate::geometry::Vector3;
-use crate::math::float::{atan2, sqrt};
+use crate::math::float::{atan2, sin_cos, sqrt};
 
 /// Intervals in which the blend is searched for its greatest distance from the paths.
 const INTERVALS: u32 = 12;
@@ -14,9 +16,20 @@ const COMPARISONS: u32 = 8;
 
 /// One of the two paths as seen from the corner, prepared for the distance from points nearby.
 pub(super) enum Side<'a> {
-    Straight { start: Vector3, direction: Vector3, length: f64 },
-    Round(&'a Arc),
-    Polynomial { coefficients: &'a [Vector3; 6], range: [f64; 2] },
+    Straight {
+        start: Vector3,
+        direction: Vector3,
+        length: f64,
+    },
+    /// With the arc's last point, seen from the centre: cosine and sine of its angle.
+    Round {
+        arc: &'a Arc,
+        end: [f64; 2],
+    },
+    Polynomial {
+        coefficients: &'a [Vector3; 6],
+        range: [f64; 2],
+    },
 }
 
 impl<'a> Side<'a> {
@@ -26,7 +39,10 @@ impl<'a> Side<'a> {
             Curve::Line { start, direction, length } => {
                 Self::Straight { start: *start, direction: *direction, length: *length }
             }
-            Curve::Arc(arc) => Self::Round(arc),
+            Curve::Arc(arc) => {
+                let (sin, cos) = sin_cos(arc.angle);
+                Self::Round { arc, end: [cos, sin] }
+            }
             Curve::Quintic(curve) => {
                 let (coefficients, range) = curve.around(at, reach);
                 Self::Polynomial { coefficients, range }
@@ -41,7 +57,7 @@ impl<'a> Side<'a> {
                 let offset = point - start;
                 (offset - direction * offset.dot(direction).max(0.0).min(*length)).norm_squared()
             }
-            Self::Round(arc) => square_from_arc(arc, point),
+            Self::Round { arc, end } => square_from_arc(arc, *end, point),
             Self::Polynomial { coefficients, range: [first, last] } => {
                 let nearest = foot(coefficients, point, 0.5 * (first + last), [*first, *last]);
                 (derivatives(coefficients, nearest)[0] - point).norm_squared()
@@ -52,21 +68,18 @@ impl<'a> Side<'a> {
 }
 
 /// Square of the distance of a point from an arc, whose ends count beyond its angle.
-fn square_from_arc(arc: &Arc, point: &Vector3) -> f64 {
+fn square_from_arc(arc: &Arc, [cos, sin]: [f64; 2], point: &Vector3) -> f64 {
     let offset = point - arc.centre;
     let (x, y) = (offset.dot(&arc.radial), offset.dot(&arc.tangent));
-    let angle = atan2(y, x);
-    let angle = if angle < 0.0 { angle + core::f64::consts::TAU } else { angle };
-    if angle <= arc.angle {
-        let above = offset.dot(&arc.radial.cross(&arc.tangent));
-        let outside = sqrt(x * x + y * y) - arc.radius;
-        return outside * outside + above * above;
+    let above = offset.dot(&arc.radial.cross(&arc.tangent));
+    let square = |x: f64, y: f64| x * x + y * y + above * above;
+    let (past_start, short_of_end) = (y >= 0.0, x * sin - y * cos >= 0.0);
+    let within = if arc.angle <= PI { past_start && short_of_end } else { past_start || short_of_end };
+    if within {
+        square(sqrt(x * x + y * y) - arc.radius, 0.0)
+    } else {
+        square(x - arc.radius, y).min(square(x - arc.radius * cos, y - arc.radius * sin))
     }
-    let [start, end] = [0.0, arc.angle].map(|angle| {
-        let (sin, cos) = crate::math::float::sin_cos(angle);
-        (offset - (arc.radial * cos + arc.tangent * sin) * arc.radius).norm_squared()
-    });
-    start.min(end)
 }
 
 /// Least distance of a polynomial curve from the corner point: Newton's iteration from the nearest of a few samples.
@@ -85,15 +98,15 @@ pub(super) fn from_corner(blend: &[Vector3; 6], corner: &Vector3) -> f64 {
     sqrt(square(u).min(least))
 }
 
-/// Greatest distance of a polynomial curve from two paths: golden section about each sample that is farther than its
-/// neighbours, since a step of the curvature gives one bulge on either side.
-pub(super) fn from_paths(blend: &[Vector3; 6], sides: &[Side<'_>; 2]) -> f64 {
+/// Greatest distance of a polynomial curve from two paths, or `least` if that is more: golden section about each sample
+/// that is farther than its neighbours, since a step of the curvature gives one bulge on either side.
+pub(super) fn from_paths(blend: &[Vector3; 6], sides: &[Side<'_>; 2], least: f64) -> f64 {
     let distance = |u: f64| {
         let point = derivatives(blend, u)[0];
         sides[0].distance(&point).min(sides[1].distance(&point))
     };
     let step = 1.0 / f64::from(INTERVALS);
-    let (mut before, mut here, mut greatest) = (0.0, 0.0, 0.0);
+    let (mut before, mut here, mut greatest) = (0.0, 0.0, least);
     for k in 1..=INTERVALS {
         let u = f64::from(k) * step;
         let after = if k == INTERVALS { 0.0 } else { distance(u) };

@@ -37,6 +37,14 @@ struct Solution {
     room_ended: bool,
 }
 
+/// A blend for given trims.
+struct Joined {
+    trims: [f64; 2],
+    polynomial: [Vector3; 6],
+    path: Path,
+    orientation_error: f64,
+}
+
 impl<'a> Joint<'a> {
     pub(super) fn new(
         before: &'a Path,
@@ -82,27 +90,27 @@ impl<'a> Joint<'a> {
             }
         };
         let bound = if by_position.room_ended { Bound::Room } else { Bound::Position };
-        let trim = by_position.trim;
-        let built = self.build(trim, bound)?;
+        let blend = self.join(by_position.trim)?;
+        // The permitted error of the orientation costs a blend more to know; it is never less than this.
         let permitted = match zone.orientation {
             Some(error) => error,
-            None => self.permitted_orientation(zone.position, trim)?,
+            None if blend.orientation_error <= ORIENTATION_ERROR => ORIENTATION_ERROR,
+            None => self.permitted_orientation(zone.position, by_position.trim)?,
         };
-        if built.orientation_error <= permitted {
-            return Some(built);
+        if blend.orientation_error <= permitted {
+            return Some(self.finish(&blend, bound));
         }
-        let error = |trim: f64| self.build(trim, Bound::Orientation).map(|blend| blend.orientation_error);
-        let guess = trim * permitted / built.orientation_error;
-        let by_orientation = solve(error, permitted, guess, trim, 1.0, ORIENTATION_CONTENT)?;
-        self.build(by_orientation.trim, Bound::Orientation)
+        let error = |trim: f64| self.join(trim).map(|blend| blend.orientation_error);
+        let guess = by_position.trim * permitted / blend.orientation_error;
+        let by_orientation = solve(error, permitted, guess, by_position.trim, 1.0, ORIENTATION_CONTENT)?;
+        Some(self.finish(&self.join(by_orientation.trim)?, Bound::Orientation))
     }
 
     /// See [`CornerZone::orientation`].
     fn permitted_orientation(&self, position: f64, most: f64) -> Option<f64> {
         let right_angle = Proportions::at(0.0);
         let trim = position / (right_angle.middle() * core::f64::consts::FRAC_1_SQRT_2);
-        let blend = self.build(trim.min(most), Bound::Orientation)?;
-        Some(blend.orientation_error.max(ORIENTATION_ERROR))
+        Some(self.join(trim.min(most))?.orientation_error.max(ORIENTATION_ERROR))
     }
 
     /// The trim at which the blend of two straight lines, cut back equally, has a given distance from the corner.
@@ -142,25 +150,30 @@ impl<'a> Joint<'a> {
             Side::new(self.before, self.before.length(), 1.5 * trims[0]),
             Side::new(self.after, 0.0, 1.5 * trims[1]),
         ];
-        from_corner(polynomial, &self.corner).max(from_paths(polynomial, &sides))
+        from_paths(polynomial, &sides, from_corner(polynomial, &self.corner))
     }
 
-    fn build(&self, trim: f64, bound: Bound) -> Option<Blend> {
+    fn join(&self, trim: f64) -> Option<Joined> {
         let trims = self.trims(trim);
-        let cut = self.before.length() - trims[0];
+        let cuts = [self.before.jet(self.before.length() - trims[0]), self.after.jet(trims[1])];
         let polynomial = self.polynomial(trims);
-        let blend =
-            path(&self.before.jet(cut), &self.after.jet(trims[1]), polynomial, self.reference).ok()?;
-        Some(Blend {
-            before: self.before.part(0.0, cut),
-            path: blend,
+        let blend = path(&cuts[0], &cuts[1], polynomial, self.reference).ok()?;
+        let orientation_error = of_orientation(&blend, self.before, self.after, trims);
+        Some(Joined { trims, polynomial, path: blend, orientation_error })
+    }
+
+    fn finish(&self, joined: &Joined, bound: Bound) -> Blend {
+        let trims = joined.trims;
+        Blend {
+            before: self.before.part(0.0, self.before.length() - trims[0]),
+            path: joined.path,
             after: self.after.part(trims[1], self.after.length()),
             trims,
-            error: self.error_of(&polynomial, trims),
-            orientation_error: of_orientation(&blend, self.before, self.after, trims),
-            greatest_curvature: blend.curve().greatest_curvature(),
+            error: self.error_of(&joined.polynomial, trims),
+            orientation_error: joined.orientation_error,
+            greatest_curvature: joined.path.curve().greatest_curvature(),
             bound,
-        })
+        }
     }
 }
 

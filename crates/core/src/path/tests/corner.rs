@@ -252,7 +252,8 @@ fn random_corners_have_the_permitted_error() {
 #[test]
 #[ignore = "a million corners take minutes"]
 fn a_million_random_corners_have_the_permitted_error() {
-    assert_eq!(sweep(7, 1_000_000)[0], 0);
+    let wrong: u32 = (100..110).map(|seed| sweep(seed, 100_000)[0]).sum();
+    assert_eq!(wrong, 0);
 }
 
 #[test]
