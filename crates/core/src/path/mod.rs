@@ -5,7 +5,8 @@
 //! asked exactly.
 //!
 //! Lines and arcs come from a job's instructions. What joins them without a stop is a [`Quintic`] curve: its curvature
-//! and turning rate go on from one path's into the next one's, so that the joints' accelerations do not step.
+//! and turning rate go on from one path's into the next one's, so that the joints' accelerations do not step. [`corner`]
+//! finds the blend that keeps a permitted error, [`spline`] leads a free curve through given poses.
 
 mod blend;
 pub mod corner;

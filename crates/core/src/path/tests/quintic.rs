@@ -98,6 +98,30 @@ fn the_length_of_a_blend_is_that_of_its_chords() {
 }
 
 #[test]
+fn the_sharpest_tips_are_run_by_arc_length_too() {
+    for degrees in [90.0_f64, 150.0, 170.0, 175.0, 176.9] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let corner = pose(0.0, 0.0, 0.0, [0.0; 3]);
+        let before = Path::line(&pose(-0.1, 0.0, 0.0, [0.0; 3]), &corner);
+        let after = Path::line(&corner, &pose(0.1 * cos, 0.1 * sin, 0.0, [0.0; 3]));
+        let blend = Path::blend(&before.jet(0.05), &after.jet(0.05)).unwrap();
+        let tip = 1.0 / blend.curve().greatest_curvature();
+        let point = |s: f64| blend.pose(s).translation.vector;
+        for k in -400..=400 {
+            // Dense about the tip, out to both ends.
+            let share = f64::from(k) / 400.5;
+            let s = blend.length() * (0.5 + 0.5 * share * share * share);
+            let h =
+                (0.005 * tip.hypot(s - 0.5 * blend.length())).min(0.01 * s).min(0.01 * (blend.length() - s));
+            let chord = |n: f64| (point(s + n * h) - point(s - n * h)) / (2.0 * n * h);
+            let tangent = chord(1.0) * 1.5 - chord(2.0) * 0.6 + chord(3.0) * 0.1;
+            let error = (tangent - blend.jet(s).linear[0]).norm();
+            assert!(error < 1e-9 + 1e-16 / h, "{error:e} at {share} of {degrees} degrees");
+        }
+    }
+}
+
+#[test]
 fn a_blend_of_a_straight_continuation_is_straight() {
     let (start, end) = (pose(0.0, 0.0, 0.0, [0.0; 3]), pose(1.0, 0.0, 0.0, [0.5, 0.0, 0.0]));
     let line = Path::line(&start, &end);
