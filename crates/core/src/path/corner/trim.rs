@@ -1,5 +1,7 @@
 //! How far the two paths of a corner are cut back.
 
+use core::f64::consts::{FRAC_1_SQRT_2, LN_10};
+
 use super::super::blend::{Proportions, path, polynomial};
 use super::super::curve::PointJet;
 use super::super::{Curve, Path, SAME_POSITION};
@@ -109,7 +111,7 @@ impl<'a> Joint<'a> {
     /// See [`CornerZone::orientation`].
     fn permitted_orientation(&self, position: f64, most: f64) -> Option<f64> {
         let right_angle = Proportions::at(0.0);
-        let trim = position / (right_angle.middle() * core::f64::consts::FRAC_1_SQRT_2);
+        let trim = position / (right_angle.middle() * FRAC_1_SQRT_2);
         Some(self.join(trim.min(most))?.orientation_error.max(ORIENTATION_ERROR))
     }
 
@@ -210,7 +212,8 @@ fn solve(
             slope = secant.max(0.2 * power).min(5.0 * power);
         }
         last = Some((x, excess));
-        let secant = x - excess / slope;
+        // Far from the answer the power is not yet known: at most a factor of ten at once.
+        let secant = x - (excess / slope).clamp(-LN_10, LN_10);
         x = match (low, high) {
             (Some(low), Some(high)) if !(secant > low && secant < high) => 0.5 * (low + high),
             _ => secant.min(greatest),
