@@ -10,7 +10,7 @@
 //! | [`safety`] | the envelope every command must lie in, faults and stops |
 //! | [`kinematics`] | arm models: forward, inverse, Jacobian, joint derivatives along a path, singularities |
 //! | [`otg`] | the trajectory generator: any state to any state in the least time, jerk-limited, N axes |
-//! | [`path`] | lines and arcs with orientation, as functions of the path coordinate |
+//! | [`path`] | lines, arcs, blends and splines with orientation, as functions of the path coordinate; corners |
 //! | [`timed`] | motion of third order in a given time, and what a new target does to it |
 //!
 //! # Units and frames

@@ -84,6 +84,7 @@ impl SegmentKind {
             Self::Path(path) => match path.curve() {
                 Curve::Line { .. } => "MOVL",
                 Curve::Arc(_) => "MOVC",
+                Curve::Quintic(_) => "MOVS",
             },
             Self::Dwell => "dwell",
         }

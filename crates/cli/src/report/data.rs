@@ -136,7 +136,7 @@ fn programmed(segment: &SegmentInfo) -> Option<Programmed> {
     let SegmentKind::Path(path) = &segment.kind else { return None };
     let steps = match path.curve() {
         Curve::Line { .. } => 1,
-        Curve::Arc(_) => ARC_POINTS,
+        Curve::Arc(_) | Curve::Quintic(_) => ARC_POINTS,
     };
     let at = |step: usize| {
         let pose = path.pose(path.length() * step as f64 / steps as f64);

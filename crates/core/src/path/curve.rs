@@ -1,5 +1,6 @@
-//! Curves of the tool centre point: straight line and circular arc.
+//! Curves of the tool centre point: straight line, circular arc and polynomial.
 
+use super::quintic::Quintic;
 use crate::geometry::Vector3;
 use crate::math::float::{atan2, sin_cos};
 
@@ -16,6 +17,7 @@ pub enum ArcError {
 }
 
 /// A curve with its arc length as coordinate.
+#[allow(clippy::large_enum_variant, reason = "without a heap there is no place for it but here")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Curve {
     /// Straight from a point into a direction.
@@ -29,6 +31,8 @@ pub enum Curve {
     },
     /// Part of a circle.
     Arc(Arc),
+    /// A blend, or a piece of a spline.
+    Quintic(Quintic),
 }
 
 /// Part of a circle, less than a full turn.
@@ -47,12 +51,17 @@ pub struct Arc {
 }
 
 /// Position and its first three derivatives with respect to arc length.
+#[derive(Clone, Copy)]
 pub(super) struct PointJet {
     position: Vector3,
     derivatives: [Vector3; 3],
 }
 
 impl PointJet {
+    pub(super) fn new(position: Vector3, derivatives: [Vector3; 3]) -> Self {
+        Self { position, derivatives }
+    }
+
     pub(super) fn at_rest(self) -> Self {
         Self { derivatives: [Vector3::zeros(); 3], ..self }
     }
@@ -76,15 +85,28 @@ impl Curve {
         match self {
             Self::Line { length, .. } => *length,
             Self::Arc(arc) => arc.radius * arc.angle,
+            Self::Quintic(quintic) => quintic.length(),
         }
     }
 
-    /// Curvature in 1/m.
+    /// Greatest curvature in 1/m.
     #[must_use]
-    pub fn curvature(&self) -> f64 {
+    pub fn greatest_curvature(&self) -> f64 {
         match self {
             Self::Line { .. } => 0.0,
             Self::Arc(arc) => 1.0 / arc.radius,
+            Self::Quintic(quintic) => quintic.greatest_curvature(),
+        }
+    }
+
+    /// The part between two coordinates.
+    pub(super) fn part(&self, from: f64, to: f64) -> Self {
+        match self {
+            Self::Line { start, direction, .. } => {
+                Self::Line { start: start + direction * from, direction: *direction, length: to - from }
+            }
+            Self::Arc(arc) => Self::Arc(arc.turned(from / arc.radius, (to - from) / arc.radius)),
+            Self::Quintic(quintic) => Self::Quintic(quintic.part(from, to)),
         }
     }
 
@@ -95,6 +117,7 @@ impl Curve {
                 derivatives: [*direction, Vector3::zeros(), Vector3::zeros()],
             },
             Self::Arc(arc) => arc.jet(s),
+            Self::Quintic(quintic) => quintic.jet(s),
         }
     }
 }
@@ -138,12 +161,17 @@ impl Arc {
         if (end - start).norm() <= super::SAME_POSITION {
             return Err(ArcError::Coincident(0, 2));
         }
-        let (sin, cos) = sin_cos(self.coordinate(start) / self.radius);
-        let radial = self.radial * cos + self.tangent * sin;
-        let tangent = self.tangent * cos - self.radial * sin;
-        let turned = Self { radial, tangent, ..*self };
+        let turned = self.turned(self.coordinate(start) / self.radius, 0.0);
         let angle = turned.coordinate(end) / self.radius;
         Ok(Self { angle, ..turned })
+    }
+
+    /// The same circle, begun `by` radians further on, over `angle` radians.
+    fn turned(&self, by: f64, angle: f64) -> Self {
+        let (sin, cos) = sin_cos(by);
+        let radial = self.radial * cos + self.tangent * sin;
+        let tangent = self.tangent * cos - self.radial * sin;
+        Self { radial, tangent, angle, ..*self }
     }
 
     /// Arc length from the start to the point of the circle that lies in the direction of `point`, in [0, 2πr).

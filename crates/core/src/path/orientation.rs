@@ -1,15 +1,19 @@
-//! Orientation along a path: the shortest turn between two rotations, or a smooth turn through three.
+//! Orientation along a path: the shortest turn between two rotations, a smooth turn through three, or a polynomial one.
 
+use super::quintic_turn::QuinticTurn;
 use super::rotation_vector::RotationVectorJet;
 use crate::geometry::{Rotation, Vector3};
 
 /// The orientation as function of the path coordinate.
+#[allow(clippy::large_enum_variant, reason = "without a heap there is no place for it but here")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Orientation {
     /// From start to end, the shortest way, at constant rate.
     Geodesic(Geodesic),
     /// Through an orientation on the way.
     Through(Through),
+    /// With given angular velocities and accelerations at both ends.
+    Quintic(QuinticTurn),
 }
 
 impl Orientation {
@@ -20,6 +24,16 @@ impl Orientation {
                 Self::Geodesic(Geodesic { start: of.start * tilt, end: of.end * tilt, ..of })
             }
             Self::Through(of) => Self::Through(Through { via: of.via * tilt, ..of }),
+            Self::Quintic(of) => Self::Quintic(of.tilted(tilt)),
+        }
+    }
+
+    /// What the orientation is between two coordinates of a path of `length`.
+    pub(super) fn part(&self, from: f64, to: f64, length: f64) -> Self {
+        match *self {
+            Self::Geodesic(of) => Self::Geodesic(of.part(from, to, length)),
+            Self::Through(of) => Self::Through(Through { via_at: of.via_at - from, ..of }),
+            Self::Quintic(of) => Self::Quintic(of.part(from)),
         }
     }
 
@@ -31,6 +45,7 @@ impl Orientation {
                 geodesic.at(rate * s, rate)
             }
             Self::Through(through) => through.at(s),
+            Self::Quintic(turn) => turn.at(s),
         }
     }
 }
@@ -63,6 +78,7 @@ impl Through {
             vector: (self.linear + self.quadratic * x) * x,
             first: self.linear + self.quadratic * (2.0 * x),
             second: self.quadratic * 2.0,
+            third: Vector3::zeros(),
         };
         let (turn, angular) = jet.rotation();
         (turn * self.via, angular)
@@ -97,6 +113,14 @@ impl Geodesic {
     #[must_use]
     pub fn angle(&self) -> f64 {
         self.angle
+    }
+
+    /// The turn between two coordinates of a path of `length`, about the same axis.
+    fn part(&self, from: f64, to: f64, length: f64) -> Self {
+        let rate = if length > 0.0 { self.angle / length } else { 0.0 };
+        let (start, _) = self.at(rate * from, rate);
+        let (end, _) = self.at(rate * to, rate);
+        Self { start, end, axis: self.axis, angle: rate * (to - from) }
     }
 
     /// The orientation after `angle`, and the angular velocity with its two derivatives, at a constant `rate` of

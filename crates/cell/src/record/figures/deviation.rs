@@ -10,7 +10,7 @@ use seamline::path::{Arc, Curve, Measure, Orientation, Path};
 pub(super) struct Deviation {
     /// Path coordinate of the nearest point: metres, or radians for a turn on the spot.
     pub(super) s: f64,
-    /// Distance from the line or arc, in metres.
+    /// Distance from the curve, in metres.
     pub(super) distance: f64,
     /// Angle from the programmed orientation at `s`, in radians.
     pub(super) angle: f64,
@@ -37,6 +37,7 @@ impl Programmed {
         let (on_curve, distance) = match self.path.curve() {
             Curve::Line { start, direction, length } => from_line(&position, start, direction, *length),
             Curve::Arc(arc) => from_arc(&position, arc),
+            Curve::Quintic(curve) => curve.nearest(&position),
         };
         let turned = pose.rotation * self.start.inverse();
         let s = match self.path.measure() {
@@ -53,7 +54,9 @@ impl Programmed {
                 Rotation::from_scaled_axis(self.turn * (s / self.path.length()))
             }
             Orientation::Geodesic(_) => Rotation::identity(),
-            Orientation::Through(_) => self.path.pose(s).rotation * self.start.inverse(),
+            Orientation::Through(_) | Orientation::Quintic(_) => {
+                self.path.pose(s).rotation * self.start.inverse()
+            }
         }
     }
 }

@@ -1,3 +1,10 @@
+//! Lines, arcs, blends and splines as functions of their coordinate.
+
+mod corner;
+mod quintic;
+mod random;
+mod spline;
+
 use super::*;
 use crate::geometry::{Rotation, Vector3};
 
