@@ -13,8 +13,8 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use common::{Kind, Move, REFERENCE_SEED, Random, joint_limits, random_move};
-use seamline_cell::plan::timing::{JointPath, Timing, TimingKind, time_path};
+use common::{Kind, Move, REFERENCE_SEED, Random, joint_limits, random_move, time_alone};
+use seamline_cell::plan::timing::{JointPath, Timing, TimingKind};
 
 const REPEATS: usize = 3;
 
@@ -60,7 +60,7 @@ fn planned(job: &mut Move) -> (Option<Timing>, f64) {
     let mut found = None;
     for _ in 0..REPEATS {
         let begun = Instant::now();
-        match time_path(&mut job.path, &joints, &job.limits) {
+        match time_alone(&mut job.path, &joints, &job.limits) {
             Ok(timing) => found = Some(timing),
             Err(error) => println!("{error:?}"),
         }

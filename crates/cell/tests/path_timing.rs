@@ -7,10 +7,10 @@ mod common;
 use std::collections::HashMap;
 
 use common::planar::Planar;
-use common::{ArmPath, Kind, Move, REFERENCE_SEED, Random, joint_limits, random_move};
+use common::{ArmPath, Kind, Move, REFERENCE_SEED, Random, joint_limits, random_move, time_alone};
 use seamline::kinematics::JointJet;
 use seamline_cell::plan::timing::{
-    JointPath, Order, PathLimits, Timing, TimingError, TimingKind, TimingLimits, time_path,
+    JointPath, Order, PathLimits, Timing, TimingError, TimingKind, TimingLimits,
 };
 
 /// Finite differences of joint positions may exceed the limits by this: velocity and acceleration by rounding
@@ -131,7 +131,7 @@ fn random_moves_keep_every_limit_and_lose_little_time() {
     for index in 0..250 {
         let Move { kind, mut path, limits } = random_move(&mut random, Kind::of(index));
         let what = format!("move {index}, {kind:?}");
-        let timing = time_path(&mut path, &joints, &limits).unwrap();
+        let timing = time_alone(&mut path, &joints, &limits).unwrap();
         assert_ne!(timing.kind(), TimingKind::Stretched, "{what}");
         assert_whole(&timing, path.length(), &limits, &what);
         let dense = dense_load(&mut path, &timing, &joints, &limits);
@@ -172,7 +172,7 @@ fn other_limits_are_kept_too() {
             limits.acceleration *= rise;
             limits.jerk *= rise;
             let what = format!("{name} move {index}, {kind:?}");
-            let timing = time_path(&mut path, &joints, &limits).unwrap();
+            let timing = time_alone(&mut path, &joints, &limits).unwrap();
             assert_ne!(timing.kind(), TimingKind::Stretched, "{what}");
             assert_whole(&timing, path.length(), &limits, &what);
             let dense = dense_load(&mut path, &timing, &joints, &limits);
@@ -189,7 +189,7 @@ fn the_closest_passes_are_timed() {
     for index in 0..20 {
         let Move { kind, mut path, limits } = random_move(&mut random, Kind::needle(index));
         let what = format!("move {index}, {kind:?}");
-        let timing = time_path(&mut path, &joints, &limits).unwrap();
+        let timing = time_alone(&mut path, &joints, &limits).unwrap();
         assert_eq!(timing.kind(), TimingKind::Optimized, "{what}");
         let dense = dense_load(&mut path, &timing, &joints, &limits);
         assert!(dense.iter().all(|&share| share <= DENSE), "{what}: {dense:?}");
@@ -207,7 +207,7 @@ fn passing(distance: f64) -> Planar {
 
 #[test]
 fn where_the_joints_can_follow_it_is_the_plain_s_curve() {
-    let timing = time_path(&mut passing(0.4), &STRONG, &GENTLE).unwrap();
+    let timing = time_alone(&mut passing(0.4), &STRONG, &GENTLE).unwrap();
     let PathLimits { speed, acceleration, jerk } = GENTLE;
     assert_eq!(timing.kind(), TimingKind::Plain);
     assert!(timing.slowdowns().is_empty());
@@ -222,7 +222,7 @@ fn where_the_joints_can_follow_it_is_the_plain_s_curve() {
 fn the_programmed_speed_is_held_outside_slowdowns() {
     let mut path = passing(0.0005);
     let limits = PathLimits { speed: 0.5, acceleration: 10.0, jerk: 500.0 };
-    let timing = time_path(&mut path, &STRONG, &limits).unwrap();
+    let timing = time_alone(&mut path, &STRONG, &limits).unwrap();
     assert_eq!(timing.kind(), TimingKind::Optimized);
     let [slowdown] = timing.slowdowns() else { panic!("{:?}", timing.slowdowns()) };
     let sustainable = |s: f64| {
@@ -290,14 +290,14 @@ fn neither_unit_nor_direction_matters() {
     let mut random = Random(3);
     for index in 0..10 {
         let Move { kind, mut path, limits } = random_move(&mut random, Kind::of(index));
-        let wanted = time_path(&mut path, &joints, &limits).unwrap().duration();
+        let wanted = time_alone(&mut path, &joints, &limits).unwrap().duration();
         let mut in_mm = Changed { path: path.clone(), unit: 1000.0, reversed: false };
         let PathLimits { speed, acceleration, jerk } = limits;
         let limits_mm = PathLimits { speed: 1e3 * speed, acceleration: 1e3 * acceleration, jerk: 1e3 * jerk };
-        let found = time_path(&mut in_mm, &joints, &limits_mm).unwrap().duration();
+        let found = time_alone(&mut in_mm, &joints, &limits_mm).unwrap().duration();
         assert!((found / wanted - 1.0).abs() < 1e-5, "{index} {kind:?}: {found} {wanted}");
         let mut back = Changed { path, unit: 1.0, reversed: true };
-        let found = time_path(&mut back, &joints, &limits).unwrap().duration();
+        let found = time_alone(&mut back, &joints, &limits).unwrap().duration();
         assert!((found / wanted - 1.0).abs() < 2e-3, "{index} {kind:?}: {found} {wanted}");
     }
 }
@@ -327,8 +327,8 @@ fn a_joint_alone_gets_its_own_s_curve() {
         let wide = PathLimits { speed: 20.0, acceleration: 1e3, jerk: 1e6 };
         let own = PathLimits { speed: 2.0, acceleration: 10.0, jerk: 500.0 };
         let mut path = Single(length, |s| [s, 1.0, 0.0, 0.0]);
-        let found = time_path(&mut path, &ONE, &wide).unwrap();
-        let best = time_path(&mut Single(length, |_| [0.0; 4]), &ONE, &own).unwrap();
+        let found = time_alone(&mut path, &ONE, &wide).unwrap();
+        let best = time_alone(&mut Single(length, |_| [0.0; 4]), &ONE, &own).unwrap();
         assert_eq!((found.kind(), best.kind()), (TimingKind::Optimized, TimingKind::Plain));
         let ratio = found.duration() / best.duration();
         assert!((1.0..1.012).contains(&ratio), "{length}: {ratio}");
@@ -340,18 +340,18 @@ fn what_has_no_timing_is_refused() {
     let limits = PathLimits { speed: 1.0, acceleration: 10.0, jerk: 500.0 };
     let straight = |s: f64| [s, 1.0, 0.0, 0.0];
     let refused = |path: &mut dyn FnMut() -> Result<Timing, TimingError<()>>| path().unwrap_err();
-    let nothing = time_path(&mut Single(0.0, straight), &ONE, &limits).unwrap();
+    let nothing = time_alone(&mut Single(0.0, straight), &ONE, &limits).unwrap();
     assert_eq!((nothing.duration(), nothing.pieces().len()), (0.0, 0));
-    let error = refused(&mut || time_path(&mut Single(f64::NAN, straight), &ONE, &limits));
+    let error = refused(&mut || time_alone(&mut Single(f64::NAN, straight), &ONE, &limits));
     assert!(matches!(error, TimingError::Length(_)));
     let error =
-        refused(&mut || time_path(&mut Single(1.0, straight), &ONE, &PathLimits { jerk: 0.0, ..limits }));
+        refused(&mut || time_alone(&mut Single(1.0, straight), &ONE, &PathLimits { jerk: 0.0, ..limits }));
     assert_eq!(error, TimingError::PathLimit { order: Order::Jerk, value: 0.0 });
     let error = refused(&mut || {
-        time_path(&mut Single(1.0, straight), &TimingLimits { velocity: [-1.0], ..ONE }, &limits)
+        time_alone(&mut Single(1.0, straight), &TimingLimits { velocity: [-1.0], ..ONE }, &limits)
     });
     assert_eq!(error, TimingError::JointLimit { joint: 0, order: Order::Velocity, value: -1.0 });
-    let out_of_reach = time_path(&mut Planar { length: 2.0, ..passing(0.4) }, &STRONG, &GENTLE);
+    let out_of_reach = time_alone(&mut Planar { length: 2.0, ..passing(0.4) }, &STRONG, &GENTLE);
     assert!(matches!(out_of_reach, Err(TimingError::Path { position, .. }) if position > 0.8));
 }
 
@@ -370,7 +370,7 @@ fn jumps_are_refused_where_they_are() {
         },
     ];
     for (which, jump) in jumps.into_iter().enumerate() {
-        let found = time_path(&mut Single(1.0, jump), &ONE, &limits);
+        let found = time_alone(&mut Single(1.0, jump), &ONE, &limits);
         let Err(TimingError::Discontinuous { position, joint: 0 }) = found else {
             panic!("jump {which}: {:?}", found.map(|timing| timing.duration()))
         };

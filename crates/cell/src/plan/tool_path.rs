@@ -12,7 +12,9 @@ use super::planner::{Planned, Planner};
 use super::resolve::Goal;
 use super::speed;
 use super::suggest::Trouble;
-use super::timing::{Order, PathLimits, Slowdown, Timing, TimingError, TimingKind, TimingLimits, time_path};
+use super::timing::{
+    Course, Order, PathLimits, Slowdown, Stretch, Timing, TimingError, TimingKind, TimingLimits, time_path,
+};
 use super::workspace;
 use crate::cell::Cell;
 use crate::job::{ArcPart, Coordinates, Frame, Location, Move, Target};
@@ -97,7 +99,8 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let follow = PathJoints::follow(&self.arm.kinematics, path, &self.tool.flange_from_tcp, &self.joints);
         let mut joints =
             follow.map_err(|(s, error)| path_problem(path, s, &self.follow_reason(&error), &trouble))?;
-        let timing = time_path(&mut joints, &self.timing_limits(), &limits)
+        let stretches = [Stretch { to: path.length(), limits }];
+        let timing = time_path(&mut joints, &self.timing_limits(), &Course::whole(&stretches))
             .map_err(|error| self.timing_problem(path, &error, &trouble))?;
         info.constant_part = constant_part(&timing, limits.speed);
         let end = joints.end();
@@ -201,7 +204,11 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
                 path_problem(path, position, &self.follow_reason(&FollowError::Jump { joint }), trouble)
             }
             TimingError::NoSpeed => path_problem(path, 0.0, NO_USEFUL_SPEED, trouble),
-            TimingError::Length(_) | TimingError::PathLimit { .. } | TimingError::JointLimit { .. } => {
+            TimingError::Length(_)
+            | TimingError::PathLimit { .. }
+            | TimingError::JointLimit { .. }
+            | TimingError::Stretch { .. }
+            | TimingError::Start { .. } => {
                 path_problem(path, 0.0, &format!("its limits give no motion: {error:?}"), trouble)
             }
         }

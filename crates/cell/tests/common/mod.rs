@@ -9,7 +9,9 @@ use core::f64::consts::TAU;
 use seamline::geometry::{Pose, Rotation, Vector3};
 use seamline::kinematics::{InverseError, JointJet, Kinematics, Posture, SphericalWristArm, models};
 use seamline::path::Path;
-use seamline_cell::plan::timing::{JointPath, PathLimits, TimingLimits};
+use seamline_cell::plan::timing::{
+    Course, JointPath, PathLimits, Stretch, Timing, TimingError, TimingLimits, time_path,
+};
 
 /// Neighbouring places of a trace differ by at most this in any joint.
 const TRACE_STEP: f64 = 0.2;
@@ -95,6 +97,16 @@ impl JointPath<6> for ArmPath {
         let q = self.joints(s).ok_or(None)?;
         self.arm.joint_jet(&self.path.jet(s).attached(&self.tool_from_flange), &q).map_err(Some)
     }
+}
+
+/// The timing of a path with one set of limits, from rest to rest.
+pub(crate) fn time_alone<const N: usize, P: JointPath<N>>(
+    path: &mut P,
+    joints: &TimingLimits<N>,
+    limits: &PathLimits,
+) -> Result<Timing, TimingError<P::Error>> {
+    let stretches = [Stretch { to: path.length(), limits: *limits }];
+    time_path(path, joints, &Course::whole(&stretches))
 }
 
 /// What a random move is about.

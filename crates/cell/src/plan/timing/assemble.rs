@@ -1,21 +1,23 @@
-//! The whole motion: the plain S-curve wherever the joints can follow it, and windows solved around the rest.
+//! The whole motion: the plain one wherever the joints can follow it, and windows solved around the rest.
 
 use super::check::{Check, Load};
 use super::coordinate::End;
+use super::course::Limits;
 use super::motion::{Timing, TimingKind, TimingPiece, duration, stretched};
-use super::s_curve::SCurve;
+use super::plain::Plain;
 use super::slowdown::slowdowns;
-use super::window::{Passage, Window, Workshop};
-use super::{JointPath, PathLimits, TimingError, TimingLimits};
+use super::window::{Passage, ROUNDING, Window, Workshop};
+use super::{JointPath, TimingError, TimingLimits};
 
 /// Share of a limit from which on the plain motion is not trusted to leave room for braking.
 const BUSY: f64 = 0.9;
-/// What rounding may add to a load.
-const ROUNDING: f64 = 1e-9;
-/// A window reaches this many times the longest braking beyond what the joints cannot follow.
+/// A window reaches this many times the longest braking beyond what the joints cannot follow; where that was too
+/// narrow, so many times as far, in so many rounds.
 const REACH: f64 = 1.5;
-/// Windows that need more stretching than this were too narrow.
-const STRETCH: f64 = 1.003;
+const WIDER: f64 = 4.0;
+const ROUNDS: usize = 4;
+/// A window begins and ends with so much of a cruise, in seconds, where there is one.
+const INSET: f64 = 0.02;
 /// Bound on the rounds of stretching. Where a limit is passed far, the judge says so without saying how far,
 /// and each round stretches by half as much again.
 const STRETCHINGS: usize = 100;
@@ -24,51 +26,94 @@ const STRETCHINGS: usize = 100;
 pub(super) struct Task<'a, const N: usize, P> {
     pub(super) path: &'a mut P,
     pub(super) joints: &'a TimingLimits<N>,
-    pub(super) limits: &'a PathLimits,
+    pub(super) limits: &'a Limits,
+    /// Speed at the start.
+    pub(super) start: f64,
+    /// The path will go on beyond its end.
+    pub(super) open: bool,
 }
 
-/// Stretches of the path (from, to), in order.
-type Stretches = Vec<(f64, f64)>;
+/// Where the plain motion is busy: times (from, to), and how far around it a window reaches, in seconds.
+#[derive(Debug, Clone, Copy)]
+struct Busy {
+    from: f64,
+    to: f64,
+    reach: f64,
+}
+
+/// A window, when the plain motion enters and leaves it, and what was found in it.
+struct Part {
+    window: Window,
+    from: f64,
+    to: f64,
+    passage: Passage,
+}
 
 impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
     pub(super) fn timing(&mut self) -> Result<Timing, TimingError<P::Error>> {
-        let length = self.path.length();
-        let curve = SCurve::new(length, self.limits);
-        let plain = curve.pieces();
-        let (load, busy) = self.survey(&plain)?;
+        let plain = Plain::new(self.limits, self.start)?;
+        let reach = REACH * self.longest_braking();
+        let (load, mut busy) = self.survey(&plain, reach)?;
         if load.stretch() <= 1.0 + ROUNDING {
-            return Ok(Timing::new(plain, TimingKind::Plain, Vec::new()));
+            let settled = self.settled(&plain.pieces, &[]);
+            return Ok(Timing::new(plain.pieces, TimingKind::Plain, Vec::new()).settled_for(settled));
         }
         let mut workshop = Workshop::default();
-        let mut passage = self.attempt(&mut workshop, &curve, &self.windows(&curve, &busy))?;
-        if passage.stretch > STRETCH {
-            let whole = self.attempt(&mut workshop, &curve, &[whole(length)])?;
-            if whole.duration() < passage.duration() {
-                passage = whole;
+        let mut parts = Vec::new();
+        for _ in 0..ROUNDS {
+            let windows = laid(&plain, &busy, reach);
+            parts = self.passed(&mut workshop, windows, parts)?;
+            let mut narrow = parts.iter().filter(|part| !part.passage.good()).peekable();
+            if narrow.peek().is_none() {
+                break;
+            }
+            for part in narrow {
+                let inside = |busy: &&mut Busy| busy.from < part.to && busy.to > part.from;
+                busy.iter_mut().filter(inside).for_each(|busy| busy.reach *= WIDER);
             }
         }
-        let (mut pieces, mut kind) = (all_stretched(&passage.pieces, passage.stretch), TimingKind::Optimized);
-        if passage.stretch > STRETCH {
-            let slow = self.stretched_plain(plain, &load)?;
-            if duration(&slow) < passage.duration() {
-                (pieces, kind) = (slow, TimingKind::Stretched);
-            }
+        let stretch = parts.iter().fold(1.0, |most: f64, part| most.max(part.passage.stretch));
+        let pieces = joined(&plain, &parts);
+        if parts.iter().all(|part| part.passage.good()) {
+            let (slowdowns, settled) = (slowdowns(self, &plain, &pieces)?, self.settled(&pieces, &parts));
+            return Ok(Timing::new(pieces, TimingKind::Optimized, slowdowns).settled_for(settled));
         }
-        let slowdowns = slowdowns(self, &curve, &pieces)?;
-        Ok(Timing::new(pieces, kind, slowdowns))
+        if self.start > 0.0 {
+            // All that is left takes time all along, the start included.
+            return Err(TimingError::NoSpeed);
+        }
+        let slow = self.stretched_plain(plain.pieces.clone(), &load)?;
+        let (pieces, kind) = if duration(&slow) < duration(&pieces) * stretch {
+            (slow, TimingKind::Stretched)
+        } else {
+            (all_stretched(&pieces, stretch), TimingKind::Optimized)
+        };
+        let slowdowns = slowdowns(self, &plain, &pieces)?;
+        let settled = if self.open { 0 } else { pieces.len() };
+        Ok(Timing::new(pieces, kind, slowdowns).settled_for(settled))
+    }
+
+    /// The longest time from full speed to rest, of any joint and of the path.
+    fn longest_braking(&self) -> f64 {
+        let braking = |v: f64, a: f64, j: f64| v / a + a / j;
+        let path = self.limits.all().map(|limits| braking(limits.speed, limits.acceleration, limits.jerk));
+        let joints = (0..N)
+            .map(|i| braking(self.joints.velocity[i], self.joints.acceleration[i], self.joints.jerk[i]));
+        joints.chain(path).fold(0.0, f64::max)
     }
 
     /// The load of the plain motion, and where it is busy.
-    fn survey(&mut self, plain: &[TimingPiece]) -> Result<(Load<N>, Stretches), TimingError<P::Error>> {
+    fn survey(&mut self, plain: &Plain, reach: f64) -> Result<(Load<N>, Vec<Busy>), TimingError<P::Error>> {
         let mut check = Check::new(self.path, self.joints, self.limits);
         let mut load = Load::NONE;
-        let mut busy: Stretches = Vec::new();
-        for piece in plain {
+        let mut busy: Vec<Busy> = Vec::new();
+        for (piece, start) in plain.pieces.iter().zip(&plain.starts) {
             let part = check.piece(piece, |from, to, load| {
+                let (from, to) = (start + from, start + to);
                 if load.joints.iter().flatten().any(|&share| share > BUSY) {
                     match busy.last_mut() {
-                        Some(last) if last.1 >= from => last.1 = to,
-                        _ => busy.push((from, to)),
+                        Some(last) if last.to >= from => last.to = to,
+                        _ => busy.push(Busy { from, to, reach }),
                     }
                 }
             })?;
@@ -78,78 +123,26 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
         Ok((load, busy))
     }
 
-    /// Windows around the busy stretches, wide enough to brake in.
-    fn windows(&self, curve: &SCurve, busy: &Stretches) -> Vec<Window> {
-        let PathLimits { speed, acceleration, jerk } = *self.limits;
-        let braking = |v: f64, a: f64, j: f64| v / a + a / j;
-        let joints = (0..N)
-            .map(|i| braking(self.joints.velocity[i], self.joints.acceleration[i], self.joints.jerk[i]));
-        let reach = REACH * curve.speed * joints.fold(braking(speed, acceleration, jerk), f64::max);
-        let (first, last) = (curve.ramp() + reach, curve.length - curve.ramp() - reach);
-        let mut windows: Vec<Window> = Vec::new();
-        for &(from, to) in busy {
-            let mut window = Window { from: from - reach, to: to + reach, ends: [End::Cruise; 2] };
-            if window.from < first {
-                (window.from, window.ends[0]) = (0.0, End::Rest);
-            }
-            if window.to > last {
-                (window.to, window.ends[1]) = (curve.length, End::Rest);
-            }
-            match windows.last_mut() {
-                Some(before) if window.from < before.to + reach => {
-                    (before.to, before.ends[1]) = (window.to, window.ends[1]);
-                }
-                _ => windows.push(window),
-            }
-        }
-        windows
-    }
-
-    /// As [`Task::through`], but no motion where rounding makes the path look torn: slower it may not.
-    fn attempt(
+    /// The passages through the windows; what is known of them stays.
+    fn passed(
         &mut self,
         workshop: &mut Workshop,
-        curve: &SCurve,
-        windows: &[Window],
-    ) -> Result<Passage, TimingError<P::Error>> {
-        match self.through(workshop, curve, windows) {
-            Err(TimingError::Discontinuous { .. }) => Ok(Passage::NONE),
-            result => result,
+        windows: Vec<(Window, [f64; 2])>,
+        mut known: Vec<Part>,
+    ) -> Result<Vec<Part>, TimingError<P::Error>> {
+        let mut parts = Vec::with_capacity(windows.len());
+        for (window, [from, to]) in windows {
+            let passage = match known.iter().position(|part| part.window == window) {
+                Some(index) => known.swap_remove(index).passage,
+                None => match workshop.pass(self.path, self.joints, self.limits, &window) {
+                    // Where rounding makes the path look torn: slower it may not.
+                    Err(TimingError::Discontinuous { .. }) => Passage::NONE,
+                    passage => passage?,
+                },
+            };
+            parts.push(Part { window, from, to, passage });
         }
-    }
-
-    /// The motion that passes through the windows and is plain outside them.
-    fn through(
-        &mut self,
-        workshop: &mut Workshop,
-        curve: &SCurve,
-        windows: &[Window],
-    ) -> Result<Passage, TimingError<P::Error>> {
-        let mut pieces = Vec::new();
-        let mut stretch: f64 = 1.0;
-        // Where the plain motion has got to; nothing yet.
-        let mut done = None;
-        for window in windows {
-            if window.ends[0] == End::Cruise {
-                let begun = match done {
-                    Some(place) => place,
-                    None => {
-                        pieces.extend(curve.accelerating());
-                        curve.ramp()
-                    }
-                };
-                pieces.push(curve.cruising(begun, window.from));
-            }
-            let passage = workshop.pass(self.path, self.joints, self.limits, window)?;
-            stretch = stretch.max(passage.stretch);
-            pieces.extend(passage.pieces);
-            done = (window.ends[1] == End::Cruise).then_some(window.to);
-        }
-        if let Some(place) = done {
-            pieces.push(curve.cruising(place, curve.length - curve.ramp()));
-            pieces.extend(curve.decelerating());
-        }
-        Ok(Passage { pieces, stretch })
+        Ok(parts)
     }
 
     /// The plain motion in as much time as it takes: with all derivatives of the path finite, there is always
@@ -169,10 +162,80 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
         }
         Err(TimingError::NoSpeed)
     }
+
+    /// How many pieces, from the start, do not depend on what comes behind the end: up to the last place where
+    /// the motion is plain, at the programmed speed and without acceleration.
+    fn settled(&self, pieces: &[TimingPiece], parts: &[Part]) -> usize {
+        if !self.open {
+            return pieces.len();
+        }
+        let free = |place: f64| {
+            let index = parts.partition_point(|part| part.window.to <= place);
+            parts.get(index).is_none_or(|part| place <= part.window.from)
+        };
+        let full = |piece: &TimingPiece| {
+            let limit = self.limits.within(piece.position, piece.position).speed;
+            piece.acceleration == 0.0 && piece.velocity >= limit * (1.0 - ROUNDING)
+        };
+        pieces.iter().rposition(|piece| full(piece) && free(piece.position)).unwrap_or(0)
+    }
 }
 
-fn whole(length: f64) -> Window {
-    Window { from: 0.0, to: length, ends: [End::Rest; 2] }
+/// Windows around what is busy, wide enough to brake in, from hold to hold of the plain motion; with the times when
+/// the plain motion enters and leaves them.
+fn laid(plain: &Plain, busy: &[Busy], reach: f64) -> Vec<(Window, [f64; 2])> {
+    let mut spans: Vec<[f64; 2]> = Vec::new();
+    for busy in busy {
+        let span = [entry(plain, busy.from, busy.reach), exit(plain, busy.to, busy.reach)];
+        match spans.last_mut() {
+            Some(before) if span[0] < before[1] + reach => {
+                *before = [before[0].min(span[0]), before[1].max(span[1])];
+            }
+            _ => spans.push(span),
+        }
+    }
+    let window = |[from, to]: [f64; 2]| {
+        let (first, last) = (plain.held_at(from), plain.held_at(to));
+        let ends = [End::at(first.1), End::at(last.1)];
+        (Window { from: first.0, to: last.0, ends }, [from, to])
+    };
+    spans.into_iter().map(window).collect()
+}
+
+/// Where to begin a window, at least `reach` before `time`.
+fn entry(plain: &Plain, time: f64, reach: f64) -> f64 {
+    let time = time - reach;
+    if time < reach {
+        return 0.0;
+    }
+    let index = plain.holds.partition_point(|hold| hold.from <= time);
+    index.checked_sub(1).map_or(0.0, |index| {
+        let hold = &plain.holds[index];
+        time.min(hold.from.max(hold.to - INSET))
+    })
+}
+
+/// Where to end a window, at least `reach` after `time`.
+fn exit(plain: &Plain, time: f64, reach: f64) -> f64 {
+    let time = time + reach;
+    if time > plain.duration - reach {
+        return plain.duration;
+    }
+    let index = plain.holds.partition_point(|hold| hold.to < time);
+    plain.holds.get(index).map_or(plain.duration, |hold| time.max(hold.to.min(hold.from + INSET)))
+}
+
+/// The motion that passes through the windows and is plain outside them.
+fn joined(plain: &Plain, parts: &[Part]) -> Vec<TimingPiece> {
+    let mut pieces = Vec::new();
+    let mut time = 0.0;
+    for part in parts {
+        pieces.extend(plain.between(time, part.from));
+        pieces.extend(&part.passage.pieces);
+        time = part.to;
+    }
+    pieces.extend(plain.between(time, plain.duration));
+    pieces
 }
 
 fn all_stretched(pieces: &[TimingPiece], factor: f64) -> Vec<TimingPiece> {
@@ -182,7 +245,7 @@ fn all_stretched(pieces: &[TimingPiece], factor: f64) -> Vec<TimingPiece> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::timing::JointJet;
+    use crate::plan::timing::{JointJet, PathLimits, Stretch};
 
     /// The last resort on a joint that bends sharply once: within the limits, and one of them reached.
     #[test]
@@ -207,11 +270,13 @@ mod tests {
         }
         let joints = TimingLimits { velocity: [1.0], acceleration: [10.0], jerk: [500.0] };
         let limits = PathLimits { speed: 0.5, acceleration: 10.0, jerk: 500.0 };
-        let mut task = Task { path: &mut Bend, joints: &joints, limits: &limits };
-        let plain = SCurve::new(1.0, &limits).pieces();
-        let (load, busy) = task.survey(&plain).unwrap();
-        assert!(busy.iter().all(|&(from, to)| from < to && (from - 0.4).abs() < 0.1), "{busy:?}");
-        let slow = task.stretched_plain(plain, &load).unwrap();
+        let limits = Limits::new::<()>(&[Stretch { to: 1.0, limits }], 1.0).unwrap();
+        let mut task = Task { path: &mut Bend, joints: &joints, limits: &limits, start: 0.0, open: false };
+        let plain = Plain::new::<()>(&limits, 0.0).unwrap();
+        let (load, busy) = task.survey(&plain, 0.1).unwrap();
+        let near = |busy: &Busy| (busy.from * 0.5 - 0.4).abs() < 0.1 && busy.from < busy.to;
+        assert!(busy.iter().all(near), "{busy:?}");
+        let slow = task.stretched_plain(plain.pieces, &load).unwrap();
         let load = Check::new(task.path, &joints, &limits).pieces(&slow).unwrap();
         assert!(load.stretch() <= 1.0 && load.stretch() > 0.99, "{load:?}");
         let optimized = task.timing().unwrap();

@@ -7,6 +7,7 @@
 //! - the middle lies near the chord wherever the limit is near, so that the parabola through the three
 //!   samples tells what happens between them.
 
+use super::course::Limits;
 use super::motion::{PathState, TimingPiece};
 use super::{JointJet, JointPath, PathLimits, TimingError, TimingLimits};
 
@@ -85,6 +86,7 @@ struct Sample<const N: usize> {
     position: [f64; N],
     /// Velocity, acceleration and jerk as signed shares of their limits.
     shares: [[f64; N]; 3],
+    /// Speed, acceleration and jerk along the path.
     path: [f64; 3],
     /// What rounding does to position, velocity and acceleration.
     noise: [[f64; N]; 3],
@@ -107,15 +109,18 @@ pub(super) struct Check<'a, const N: usize, P> {
     path: &'a mut P,
     length: f64,
     joints: &'a TimingLimits<N>,
-    limits: &'a PathLimits,
+    limits: &'a Limits,
+    /// The path's limits under which the samples at hand are judged.
+    valid: PathLimits,
     /// Right ends of intervals still to be judged, the nearest last, and how often each was split.
     waiting: Vec<(Sample<N>, usize)>,
 }
 
 impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
-    pub(super) fn new(path: &'a mut P, joints: &'a TimingLimits<N>, limits: &'a PathLimits) -> Self {
+    pub(super) fn new(path: &'a mut P, joints: &'a TimingLimits<N>, limits: &'a Limits) -> Self {
         let length = path.length();
-        Self { path, length, joints, limits, waiting: Vec::with_capacity(DEPTH + 1) }
+        let valid = limits.within(0.0, length);
+        Self { path, length, joints, limits, valid, waiting: Vec::with_capacity(DEPTH + 1) }
     }
 
     /// The load of a whole motion.
@@ -127,7 +132,7 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
         Ok(load)
     }
 
-    /// The load of one piece; `each` is told every interval's place (from, to) and load.
+    /// The load of one piece; `each` is told every interval's times in the piece (from, to) and load.
     pub(super) fn piece(
         &mut self,
         piece: &TimingPiece,
@@ -135,6 +140,7 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
     ) -> Result<Load<N>, TimingError<P::Error>> {
         let intervals = (piece.duration / FIRST_INTERVAL).ceil().clamp(1.0, FIRST_INTERVALS);
         let mut load = Load::NONE;
+        self.valid = self.limits.within(piece.position, piece.end().position);
         let mut start = self.sample(piece, 0.0)?;
         for index in 1..=intervals as usize {
             let end = self.sample(piece, piece.duration * index as f64 / intervals)?;
@@ -149,11 +155,11 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
         let start = self.sample(piece, 0.0)?;
         let middle = self.sample(piece, piece.duration / 2.0)?;
         let end = self.sample(piece, piece.duration)?;
-        let mut ignore = |_: f64, _: f64, _: &Load<N>| {};
-        Ok([
-            self.interval(piece, &start, &middle, &mut ignore)?,
-            self.interval(piece, &middle, &end, &mut ignore)?,
-        ])
+        let mut half = |from: &Sample<N>, to: &Sample<N>| {
+            self.valid = self.limits.within(from.place, to.place);
+            self.interval(piece, from, to, &mut |_, _, _| {})
+        };
+        Ok([half(&start, &middle)?, half(&middle, &end)?])
     }
 
     fn sample(&mut self, piece: &TimingPiece, time: f64) -> Result<Sample<N>, TimingError<P::Error>> {
@@ -170,8 +176,7 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
         if let Some(joint) = (0..N).find(finite) {
             return Err(TimingError::Discontinuous { position: place, joint });
         }
-        let PathLimits { speed, acceleration, jerk } = *self.limits;
-        let path = [state.velocity / speed, state.acceleration / acceleration, state.jerk / jerk];
+        let path = [state.velocity, state.acceleration, state.jerk];
         let noise = self.noise(&jet, &state, &shares);
         Ok(Sample { time, place, position: jet.position, shares, path, noise })
     }
@@ -208,7 +213,7 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
         // Each turn either finishes an interval or splits one, and there are at most SPLITS of these.
         while let Some((right, depth)) = self.waiting.pop() {
             let middle = self.sample(piece, (left.time + right.time) / 2.0)?;
-            let part = highest(&left, &middle, &right);
+            let part = highest(&left, &middle, &right, &self.valid);
             let foretold = self.foretold(&left, &middle, &right, &part);
             if !foretold && depth == DEPTH {
                 self.refuse_jump(&left, &right)?;
@@ -225,7 +230,7 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
                 self.waiting.push((middle, depth + 1));
                 continue;
             }
-            each(left.place, right.place, &part);
+            each(left.time, right.time, &part);
             load = load.raised(&part);
             left = right;
         }
@@ -311,7 +316,13 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
 }
 
 /// The highest shares on three evenly spaced samples and on the parabola through them.
-fn highest<const N: usize>(start: &Sample<N>, middle: &Sample<N>, end: &Sample<N>) -> Load<N> {
+fn highest<const N: usize>(
+    start: &Sample<N>,
+    middle: &Sample<N>,
+    end: &Sample<N>,
+    limits: &PathLimits,
+) -> Load<N> {
+    let path = [limits.speed, limits.acceleration, limits.jerk];
     let highest = |a: f64, m: f64, b: f64| {
         let (slope, bend) = ((b - a) / 2.0, a - 2.0 * m + b);
         let vertex = if slope.abs() < bend.abs() { (m - slope * slope / (2.0 * bend)).abs() } else { 0.0 };
@@ -323,15 +334,18 @@ fn highest<const N: usize>(start: &Sample<N>, middle: &Sample<N>, end: &Sample<N
                 highest(start.shares[order][i], middle.shares[order][i], end.shares[order][i])
             })
         }),
-        path: core::array::from_fn(|order| highest(start.path[order], middle.path[order], end.path[order])),
+        path: core::array::from_fn(|order| {
+            highest(start.path[order], middle.path[order], end.path[order]) / path[order]
+        }),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::timing::course::Stretch;
     use crate::plan::timing::motion::stretched;
-    use crate::plan::timing::s_curve::SCurve;
+    use crate::plan::timing::plain::Plain;
 
     /// A joint that turns by nearly π about the middle of a path of length 1: q = atan((s − ½)/δ).
     struct Needle(f64);
@@ -359,18 +373,26 @@ mod tests {
     const JOINT: TimingLimits<1> = TimingLimits { velocity: [1.0], acceleration: [10.0], jerk: [500.0] };
     const PATH: PathLimits = PathLimits { speed: 0.1, acceleration: 2.0, jerk: 100.0 };
 
+    fn limits() -> Limits {
+        Limits::new::<()>(&[Stretch { to: 1.0, limits: PATH }], 1.0).unwrap()
+    }
+
+    fn plain() -> Vec<TimingPiece> {
+        Plain::new::<()>(&limits(), 0.0).unwrap().pieces
+    }
+
     /// Needles from 1 cm down to 1 nm, much narrower than the first samples' distance, are all seen; the
     /// widest is measured to one per cent.
     #[test]
     fn no_needle_slips_through() {
-        let pieces = SCurve::new(1.0, &PATH).pieces();
+        let pieces = plain();
         for decade in 2..10 {
             let width = 10f64.powi(-decade);
-            let load = Check::new(&mut Needle(width), &JOINT, &PATH).pieces(&pieces).unwrap();
+            let load = Check::new(&mut Needle(width), &JOINT, &limits()).pieces(&pieces).unwrap();
             assert!(load.stretch() > CLEAR, "{width}");
         }
         let slow: Vec<TimingPiece> = pieces.iter().map(|piece| stretched(piece, 10.0)).collect();
-        let load = Check::new(&mut Needle(0.01), &JOINT, &PATH).pieces(&slow).unwrap();
+        let load = Check::new(&mut Needle(0.01), &JOINT, &limits()).pieces(&slow).unwrap();
         let v = PATH.speed / 10.0;
         // Highest q′, q″ and q‴ of the arctangent.
         let highest = [v / 0.01, 0.649_519 * (v / 0.01).powi(2), 2.0 * (v / 0.01).powi(3)];
@@ -394,8 +416,8 @@ mod tests {
                 Ok(JointJet { position: [noise], velocity: [0.1], acceleration: [0.0], jerk: [0.0] })
             }
         }
-        let pieces = SCurve::new(1.0, &PATH).pieces();
-        let found = Check::new(&mut Noise, &JOINT, &PATH).pieces(&pieces);
+        let pieces = plain();
+        let found = Check::new(&mut Noise, &JOINT, &limits()).pieces(&pieces);
         assert!(matches!(found, Err(TimingError::Discontinuous { joint: 0, .. })));
     }
 }

@@ -11,8 +11,26 @@ use super::motion::{PathState, TimingPiece, duration};
 pub(super) enum End {
     /// It rests.
     Rest,
-    /// It runs at the programmed speed, without acceleration.
-    Cruise,
+    /// It runs at this speed, without acceleration.
+    Cruise(f64),
+}
+
+impl End {
+    /// An end without acceleration at a speed.
+    pub(super) fn at(speed: f64) -> Self {
+        if speed == 0.0 { Self::Rest } else { Self::Cruise(speed) }
+    }
+
+    pub(super) fn speed(self) -> f64 {
+        match self {
+            Self::Rest => 0.0,
+            Self::Cruise(speed) => speed,
+        }
+    }
+
+    pub(super) fn rests(self) -> bool {
+        self == Self::Rest
+    }
 }
 
 /// s and its derivatives with respect to w.
@@ -48,19 +66,19 @@ impl Coordinate {
 
     /// Through samples `s` of the motion at even times `step`, one a knot, which it follows as a spline of
     /// controls does: smoothly, not exactly. The ends are met exactly.
-    pub(super) fn new(samples: &[f64], step: f64, ends: [End; 2], speed: f64) -> Self {
+    pub(super) fn new(samples: &[f64], step: f64, ends: [End; 2]) -> Self {
         let mut controls = vec![0.0; samples.len() + 2 * PAD];
         controls[PAD..PAD + samples.len()].copy_from_slice(samples);
         let (start, end) = (samples[0], samples[samples.len() - 1]);
-        close(&mut controls, start, speed * step, ends[0]);
+        close(&mut controls, start, step, ends[0]);
         controls.reverse();
-        close(&mut controls, end, -speed * step, ends[1]);
+        close(&mut controls, end, -step, ends[1]);
         controls.reverse();
         Self { step, controls }
     }
 
     /// From a motion in time: nearly the motion itself, unless that would turn back between two knots.
-    pub(super) fn following(pieces: &[TimingPiece], knots: usize, ends: [End; 2], speed: f64) -> Self {
+    pub(super) fn following(pieces: &[TimingPiece], knots: usize, ends: [End; 2]) -> Self {
         let step = duration(pieces) / (knots - 1) as f64;
         let mut states = Vec::with_capacity(knots);
         let (mut index, mut begun) = (0, 0.0);
@@ -79,7 +97,7 @@ impl Coordinate {
         }
         samples[0] = pieces[0].position;
         samples[knots - 1] = pieces[pieces.len() - 1].end().position;
-        Self::new(&samples, step, ends, speed)
+        Self::new(&samples, step, ends)
     }
 
     /// s and its derivatives at a site: knot k is site 2k, the middle between two knots lies between.
@@ -115,8 +133,9 @@ fn quasi_interpolant(state: &PathState, step: f64) -> f64 {
     state.position - step * step / 4.0 * state.acceleration
 }
 
-/// Sets the controls at the first end: `place` is the coordinate there, `pace` the cruise's way in a knot.
-fn close(controls: &mut [f64], place: f64, pace: f64, end: End) {
+/// Sets the controls at the first end: `place` is the coordinate there, `step` the time from knot to knot, negative
+/// at the other end.
+fn close(controls: &mut [f64], place: f64, step: f64, end: End) {
     match end {
         End::Rest => {
             // Odd about the end, so that s = place and s_ww = 0; s_w = 0 asks for the first neighbour. A
@@ -127,9 +146,9 @@ fn close(controls: &mut [f64], place: f64, pace: f64, end: End) {
             controls[PAD - 1] = place + second / 10.0;
             controls[PAD - 2] = place - second;
         }
-        End::Cruise => {
+        End::Cruise(speed) => {
             for (index, control) in controls[..=2 * PAD].iter_mut().enumerate() {
-                *control = place + pace * (index as f64 - PAD as f64);
+                *control = place + speed * step * (index as f64 - PAD as f64);
             }
         }
     }
@@ -151,7 +170,7 @@ mod tests {
         };
         let samples: Vec<f64> =
             (0..30).map(|knot| quasi_interpolant(&cubic(f64::from(knot) * step), step)).collect();
-        let coordinate = Coordinate::new(&samples, step, [End::Rest; 2], 1.0);
+        let coordinate = Coordinate::new(&samples, step, [End::Rest; 2]);
         // The last eight sites feel that the motion is to stop there.
         for site in 0..coordinate.sites() - 8 {
             let (found, wanted) = (coordinate.at(site), cubic(site as f64 * step / 2.0));
@@ -169,7 +188,7 @@ mod tests {
     fn a_cruise_is_met_exactly() {
         let (step, speed) = (0.005, 0.3);
         let samples: Vec<f64> = (0..20).map(|knot| 1.0 + f64::from(knot) * step * speed).collect();
-        let coordinate = Coordinate::new(&samples, step, [End::Cruise; 2], speed);
+        let coordinate = Coordinate::new(&samples, step, [End::Cruise(speed); 2]);
         for site in 0..coordinate.sites() {
             let jet = coordinate.at(site);
             assert!((jet.s - 1.0 - site as f64 * step * speed / 2.0).abs() < 1e-14);

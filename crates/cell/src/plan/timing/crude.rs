@@ -4,8 +4,9 @@
 //! that takes the corners off. It only supplies the coordinate s(w); the optimizer finds the motion.
 
 use super::coordinate::{Coordinate, End};
+use super::course::Limits;
 use super::window::Window;
-use super::{JointJet, JointPath, PathLimits, TimingError, TimingLimits};
+use super::{JointJet, JointPath, TimingError, TimingLimits};
 
 /// Share of the acceleration and jerk limits that the pointwise bound gives to a path's bending.
 const BENDING_SHARE: f64 = 0.6;
@@ -37,7 +38,7 @@ struct Place<const N: usize> {
 struct Survey<'a, const N: usize, P> {
     path: &'a mut P,
     joints: &'a TimingLimits<N>,
-    limits: &'a PathLimits,
+    limits: &'a Limits,
     window: &'a Window,
     /// Jerk with which the motion can leave rest, at either end.
     launch: [f64; 2],
@@ -47,11 +48,11 @@ struct Survey<'a, const N: usize, P> {
 pub(super) fn coordinate<const N: usize, P: JointPath<N>>(
     path: &mut P,
     joints: &TimingLimits<N>,
-    limits: &PathLimits,
+    limits: &Limits,
     window: &Window,
     step: f64,
 ) -> Result<Coordinate, TimingError<P::Error>> {
-    let mut survey = Survey { path, joints, limits, window, launch: [limits.jerk; 2] };
+    let mut survey = Survey { path, joints, limits, window, launch: [f64::INFINITY; 2] };
     let mut places = survey.places()?;
     limit_braking(&mut places);
     places.reverse();
@@ -62,7 +63,7 @@ pub(super) fn coordinate<const N: usize, P: JointPath<N>>(
     let knots = knots(duration, step);
     let step = duration / (knots - 1) as f64;
     let samples = sampled(&places, &times, knots, &window.ends);
-    Ok(Coordinate::new(&smoothed(&samples, &window.ends), step, window.ends, limits.speed))
+    Ok(Coordinate::new(&smoothed(&samples, &window.ends), step, window.ends))
 }
 
 /// Number of knots for a duration: at least a few, and not more than memory is for.
@@ -81,8 +82,8 @@ impl<const N: usize, P: JointPath<N>> Survey<'_, N, P> {
 
     fn place(&mut self, s: f64) -> Result<Place<N>, TimingError<P::Error>> {
         let jet = self.jet(s)?;
-        let mut speed = self.limits.speed;
-        let mut acceleration = self.limits.acceleration;
+        let limits = self.limits.within(s, s);
+        let (mut speed, mut acceleration) = (limits.speed, limits.acceleration);
         for i in 0..N {
             let bending = BENDING_SHARE * self.joints.acceleration[i] / jet.acceleration[i].abs();
             let twisting = BENDING_SHARE * self.joints.jerk[i] / jet.jerk[i].abs();
@@ -93,9 +94,11 @@ impl<const N: usize, P: JointPath<N>> Survey<'_, N, P> {
         }
         let distances = [s - self.window.from, self.window.to - s];
         for ((distance, launch), end) in distances.into_iter().zip(self.launch).zip(self.window.ends) {
-            if end == End::Rest {
+            if end.rests() {
                 // From rest at constant jerk: s = j t³/6, ṡ = j t²/2.
                 speed = speed.min((4.5 * launch * distance * distance).cbrt());
+            } else if distance == 0.0 {
+                speed = end.speed();
             }
         }
         Ok(Place { s, position: jet.position, speed, acceleration: PASS_SHARE * acceleration })
@@ -105,6 +108,7 @@ impl<const N: usize, P: JointPath<N>> Survey<'_, N, P> {
         let (from, to) = (self.window.from, self.window.to);
         for (launch, s) in [from, to].into_iter().enumerate() {
             let jet = self.jet(s)?;
+            self.launch[launch] = self.limits.within(s, s).jerk;
             for i in 0..N {
                 self.launch[launch] = self.launch[launch].min(self.joints.jerk[i] / jet.velocity[i].abs());
             }
@@ -155,8 +159,8 @@ fn times<const N: usize>(places: &[Place<N>], ends: &[End; 2]) -> Vec<f64> {
     let mut time = 0.0;
     times.push(time);
     for (index, pair) in places.windows(2).enumerate() {
-        let first = index == 0 && ends[0] == End::Rest;
-        let last = index + 2 == places.len() && ends[1] == End::Rest;
+        let first = index == 0 && ends[0].rests();
+        let last = index + 2 == places.len() && ends[1].rests();
         let factor = if first || last { 3.0 } else { 2.0 };
         time += factor * (pair[1].s - pair[0].s) / (pair[0].speed + pair[1].speed);
         times.push(time);
@@ -179,9 +183,9 @@ fn sampled<const N: usize>(places: &[Place<N>], times: &[f64], knots: usize, end
             let interval = times[index + 1] - times[index];
             let share = ((time - times[index]) / interval).clamp(0.0, 1.0);
             let distance = right.s - left.s;
-            if index == 0 && ends[0] == End::Rest {
+            if index == 0 && ends[0].rests() {
                 left.s + distance * share * share * share
-            } else if index + 1 == last && ends[1] == End::Rest {
+            } else if index + 1 == last && ends[1].rests() {
                 let rest = 1.0 - share;
                 right.s - distance * rest * rest * rest
             } else {
@@ -216,7 +220,7 @@ fn smoothed(samples: &[f64], ends: &[End; 2]) -> Vec<f64> {
     for (index, value) in smooth.iter_mut().enumerate() {
         let mut weight: f64 = 1.0;
         for (distance, end) in [index, last - index].into_iter().zip(ends) {
-            if *end == End::Rest {
+            if end.rests() {
                 weight = weight.min(distance.saturating_sub(2) as f64 / FADE as f64);
             }
         }

@@ -48,16 +48,19 @@ mod assemble;
 mod banded;
 mod check;
 mod coordinate;
+mod course;
 mod crude;
 mod interior_point;
 mod motion;
+mod plain;
 mod program;
-mod s_curve;
 mod slowdown;
 mod window;
 
+use course::Limits;
 use seamline::kinematics::JointJet;
 
+pub use course::{Course, Stretch};
 pub use motion::{Order, PathState, Slowdown, Timing, TimingKind, TimingPiece};
 
 /// A path as the joints see it.
@@ -109,6 +112,20 @@ pub enum TimingError<E> {
         /// Its value.
         value: f64,
     },
+    /// A stretch of the path ends before it begins, or the last one does not end with the path.
+    Stretch {
+        /// Which one, counted from 0.
+        index: usize,
+        /// Where it ends.
+        to: f64,
+    },
+    /// The path cannot be entered at this speed: its limits do not allow it, or leave no way to stop.
+    Start {
+        /// The speed.
+        speed: f64,
+        /// The highest that would do.
+        limit: f64,
+    },
     /// A limit of a joint is not positive and finite.
     JointLimit {
         /// The joint, counted from 0.
@@ -133,17 +150,19 @@ pub enum TimingError<E> {
         /// The joint, counted from 0.
         joint: usize,
     },
-    /// Not even 10¹⁷ times slower than programmed would the joints keep their limits.
+    /// Not even 10¹⁷ times slower than programmed would the joints keep their limits; or, from a start in motion,
+    /// no motion was found. The way to rest that was planned up to there then stands.
     NoSpeed,
 }
 
-/// The near time-optimal motion along `path`, from rest to rest, within all limits at every instant.
+/// The near time-optimal motion along `path` to rest at its end, within all limits at every instant.
 ///
-/// Where the joints can follow the programmed speed all the way, it is the S-curve of the path limits alone.
-/// Costs a few per cent of the motion's duration where it is not, on one core, next to nothing where it is.
+/// Where the joints can follow the programmed speeds all the way, it is the motion of the path limits alone.
+/// Costs a few per cent of the motion's duration where it is not, on one core, next to nothing where it is;
+/// both are linear in the length and in the number of stretches.
 ///
 /// # Errors
-/// [`TimingError`] where a limit or the length is unusable, or where no speed but zero keeps the joints'
+/// [`TimingError`] where a limit, the length or the start is unusable, or where no speed but zero keeps the joints'
 /// limits.
 ///
 /// # Example
@@ -151,7 +170,9 @@ pub enum TimingError<E> {
 /// it:
 /// ```
 /// use seamline::kinematics::JointJet;
-/// use seamline_cell::plan::timing::{JointPath, PathLimits, TimingKind, TimingLimits, time_path};
+/// use seamline_cell::plan::timing::{
+///     Course, JointPath, PathLimits, Stretch, TimingKind, TimingLimits, time_path,
+/// };
 ///
 /// struct Swing;
 /// impl JointPath<1> for Swing {
@@ -165,7 +186,8 @@ pub enum TimingError<E> {
 /// }
 /// let joints = TimingLimits { velocity: [0.5], acceleration: [5.0], jerk: [250.0] };
 /// let limits = PathLimits { speed: 1.0, acceleration: 10.0, jerk: 500.0 };
-/// let timing = time_path(&mut Swing, &joints, &limits).unwrap();
+/// let stretches = [Stretch { to: 1.0, limits }];
+/// let timing = time_path(&mut Swing, &joints, &Course::whole(&stretches)).unwrap();
 /// assert_eq!(timing.kind(), TimingKind::Optimized);
 /// let middle = timing.at(timing.duration() / 2.0);
 /// assert!(middle.velocity <= 0.5 && middle.velocity > 0.498);
@@ -174,33 +196,20 @@ pub enum TimingError<E> {
 pub fn time_path<const N: usize, P: JointPath<N>>(
     path: &mut P,
     joints: &TimingLimits<N>,
-    limits: &PathLimits,
+    course: &Course<'_>,
 ) -> Result<Timing, TimingError<P::Error>> {
-    validate(path.length(), joints, limits)?;
+    validate(path.length(), joints)?;
+    let limits = &Limits::new(course.stretches, path.length())?;
     if path.length() == 0.0 {
         return Ok(Timing::new(Vec::new(), TimingKind::Plain, Vec::new()));
     }
-    assemble::Task { path, joints, limits }.timing()
+    assemble::Task { path, joints, limits, start: course.start, open: course.open }.timing()
 }
 
-fn validate<const N: usize, E>(
-    length: f64,
-    joints: &TimingLimits<N>,
-    limits: &PathLimits,
-) -> Result<(), TimingError<E>> {
+fn validate<const N: usize, E>(length: f64, joints: &TimingLimits<N>) -> Result<(), TimingError<E>> {
     let usable = |value: f64| value > 0.0 && value.is_finite();
     if !(length >= 0.0 && length.is_finite()) {
         return Err(TimingError::Length(length));
-    }
-    let path_limits = [
-        (Order::Velocity, limits.speed),
-        (Order::Acceleration, limits.acceleration),
-        (Order::Jerk, limits.jerk),
-    ];
-    for (order, value) in path_limits {
-        if !usable(value) {
-            return Err(TimingError::PathLimit { order, value });
-        }
     }
     let joint_limits = [
         (Order::Velocity, &joints.velocity),

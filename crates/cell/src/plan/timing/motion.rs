@@ -43,19 +43,50 @@ pub(super) fn stretched(piece: &TimingPiece, factor: f64) -> TimingPiece {
     }
 }
 
+/// The same way as a row of pieces goes at another pace: `pace` tells, at a time of theirs, how many times as fast
+/// it shall be, and how this factor changes per second of theirs. Exact where pieces meet.
+pub(super) fn paced(pieces: &[TimingPiece], pace: impl Fn(f64) -> [f64; 2]) -> Vec<TimingPiece> {
+    let changed = |state: &PathState, [factor, change]: [f64; 2]| PathState {
+        velocity: state.velocity * factor,
+        acceleration: (state.acceleration * factor + state.velocity * change) * factor,
+        ..*state
+    };
+    let mut time = 0.0;
+    let whole = |piece: &TimingPiece| {
+        let [start, middle, end] = [0.0, 0.5, 1.0].map(|share: f64| pace(time + share * piece.duration));
+        time += piece.duration;
+        // Simpson's rule.
+        let duration = piece.duration * (1.0 / start[0] + 4.0 / middle[0] + 1.0 / end[0]) / 6.0;
+        joining(&changed(&piece.at(0.0), start), &changed(&piece.end(), end), duration)
+    };
+    pieces.iter().map(whole).collect()
+}
+
 /// Duration of a row of pieces, in seconds.
 pub(super) fn duration(pieces: &[TimingPiece]) -> f64 {
     pieces.iter().map(|piece| piece.duration).sum()
 }
 
+/// The time at which each of a row of pieces starts, from 0.
+pub(super) fn starts(pieces: &[TimingPiece]) -> Vec<f64> {
+    let mut time = 0.0;
+    let begun = |piece: &TimingPiece| {
+        let start = time;
+        time += piece.duration;
+        start
+    };
+    pieces.iter().map(begun).collect()
+}
+
 /// How a timing came about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TimingKind {
-    /// The S-curve of the path limits alone: no joint has to slow it.
+    /// The path's limits alone: no joint has to slow it.
     Plain,
     /// Near time-optimal under the joints' limits.
     Optimized,
-    /// The S-curve stretched as a whole until every joint keeps its limits: always possible, seldom fast.
+    /// The plain motion stretched as a whole until every joint keeps its limits: from rest always possible,
+    /// seldom fast.
     Stretched,
 }
 
@@ -70,7 +101,8 @@ pub enum Order {
     Jerk,
 }
 
-/// A stretch of the path where the motion is slower than its programmed speed.
+/// A part of the path where the motion is slower than its programmed speed. Where that speed changes, one ends
+/// and another may begin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slowdown {
     /// Path coordinate where it starts.
@@ -90,7 +122,7 @@ pub struct Slowdown {
     pub order: Order,
 }
 
-/// The motion along a whole path: s(t) from rest to rest.
+/// The motion along a whole path: s(t) to rest at its end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Timing {
     pieces: Vec<TimingPiece>,
@@ -99,20 +131,19 @@ pub struct Timing {
     duration: f64,
     kind: TimingKind,
     slowdowns: Vec<Slowdown>,
+    settled: usize,
 }
 
 impl Timing {
+    /// With all pieces settled.
     pub(super) fn new(pieces: Vec<TimingPiece>, kind: TimingKind, slowdowns: Vec<Slowdown>) -> Self {
-        let mut duration = 0.0;
-        let starts = pieces
-            .iter()
-            .map(|piece| {
-                let start = duration;
-                duration += piece.duration;
-                start
-            })
-            .collect();
-        Self { pieces, starts, duration, kind, slowdowns }
+        let (starts, duration, settled) = (starts(&pieces), duration(&pieces), pieces.len());
+        Self { pieces, starts, duration, kind, slowdowns, settled }
+    }
+
+    /// With so many settled pieces.
+    pub(super) fn settled_for(self, settled: usize) -> Self {
+        Self { settled, ..self }
     }
 
     /// Duration in seconds.
@@ -138,6 +169,20 @@ impl Timing {
     #[must_use]
     pub fn slowdowns(&self) -> &[Slowdown] {
         &self.slowdowns
+    }
+
+    /// How many leading pieces stay as they are when the path goes on beyond its end: all of them, unless the
+    /// course is open.
+    ///
+    /// They end where the motion has no acceleration and nothing that comes later can make it faster: at the
+    /// programmed speed before the way to rest begins, or at an anchor. Who has
+    /// carried them out calls [`time_path`](super::time_path) again for the path from there on, with the speed
+    /// there as [`Course::start`](super::Course::start). Where there are none, the known part of the path is too
+    /// short to reach such a place: more of it is needed, or the motion has to run to rest at its end, as
+    /// planned. That stays possible from every place, whatever is found later.
+    #[must_use]
+    pub fn settled(&self) -> usize {
+        self.settled
     }
 
     /// The state at `time` seconds after the start; before the start it is the start, after the end the end.

@@ -1,8 +1,8 @@
 //! Where the motion is slower than programmed, and why.
 
 use super::assemble::Task;
-use super::motion::{Order, Slowdown, TimingPiece};
-use super::s_curve::SCurve;
+use super::motion::{Order, PathState, Slowdown, TimingPiece};
+use super::plain::{Hold, Plain};
 use super::{JointJet, JointPath, TimingError, TimingLimits};
 
 /// Share of the programmed speed below which the motion counts as slowed down.
@@ -10,44 +10,37 @@ const HELD: f64 = 0.99;
 /// Looks per piece.
 const LOOKS: usize = 4;
 
-/// The slowdowns of a motion, between the plain motion's ramps.
+/// The slowdowns of a motion: where the plain motion would cruise, cruise by cruise.
 pub(super) fn slowdowns<const N: usize, P: JointPath<N>>(
     task: &mut Task<'_, N, P>,
-    curve: &SCurve,
+    plain: &Plain,
     pieces: &[TimingPiece],
 ) -> Result<Vec<Slowdown>, TimingError<P::Error>> {
     let mut found = Vec::new();
     let mut open: Option<(Slowdown, Cause)> = None;
-    let (first, last) = (curve.ramp(), curve.length - curve.ramp());
+    let mut cruises = plain.holds.iter().filter(|hold| hold.to > hold.from).copied().peekable();
     // A slowdown reaches from the last look before it to the first after it.
-    let mut before = first;
+    let mut before = 0.0;
+    let close = |open: &mut Option<(Slowdown, Cause)>, place: f64| {
+        open.take().map(|(slowdown, cause)| closed(slowdown, place, &cause))
+    };
     for look in 0..pieces.len() * LOOKS {
         let piece = &pieces[look / LOOKS];
         let state = piece.at(piece.duration * (look % LOOKS) as f64 / LOOKS as f64);
         let place = state.position;
-        if !(first..=last).contains(&place) {
-            continue;
+        while let Some(cruise) = cruises.next_if(|cruise| cruise.end() < place) {
+            found.extend(close(&mut open, cruise.end()));
         }
-        if state.velocity >= HELD * curve.speed {
-            found.extend(open.take().map(|(slowdown, cause)| closed(slowdown, place, &cause)));
+        let Some(cruise) = cruises.peek().filter(|cruise| cruise.place <= place) else { continue };
+        if state.velocity >= HELD * cruise.speed {
+            found.extend(close(&mut open, place));
             before = place;
             continue;
         }
         let jet = task.path.jet(place).map_err(|error| TimingError::Path { position: place, error })?;
         let cause = Cause::at(&jet, task.joints);
         match &mut open {
-            None => {
-                let slowdown = Slowdown {
-                    from: before,
-                    to: place,
-                    place,
-                    speed: state.velocity,
-                    sustainable: curve.speed,
-                    joint: 0,
-                    order: Order::Acceleration,
-                };
-                open = Some((slowdown, cause));
-            }
+            None => open = Some((Slowdown::begun(cruise, before, &state), cause)),
             Some((slowdown, worst)) => {
                 if state.velocity < slowdown.speed {
                     (slowdown.place, slowdown.speed) = (place, state.velocity);
@@ -56,8 +49,25 @@ pub(super) fn slowdowns<const N: usize, P: JointPath<N>>(
             }
         }
     }
-    found.extend(open.take().map(|(slowdown, cause)| closed(slowdown, last, &cause)));
+    if let Some(cruise) = cruises.next() {
+        found.extend(close(&mut open, cruise.end()));
+    }
     Ok(found)
+}
+
+impl Slowdown {
+    /// What is known of a slowdown at its first look.
+    fn begun(cruise: &Hold, before: f64, state: &PathState) -> Self {
+        Self {
+            from: before.max(cruise.place),
+            to: state.position,
+            place: state.position,
+            speed: state.velocity,
+            sustainable: cruise.speed,
+            joint: 0,
+            order: Order::Acceleration,
+        }
+    }
 }
 
 /// What the joints allow at a place, or at the tightest of several.

@@ -2,10 +2,11 @@
 
 use super::check::{Check, Load};
 use super::coordinate::{Coordinate, End};
+use super::course::Limits;
 use super::interior_point::InteriorPoint;
-use super::motion::{PathState, TimingPiece, duration, joining};
+use super::motion::{PathState, TimingPiece, duration, joining, paced};
 use super::program::{Demand, Program};
-use super::{JointPath, PathLimits, TimingError, TimingLimits, crude};
+use super::{JointPath, TimingError, TimingLimits, crude};
 
 /// Distance of knots in seconds: on the first guess, and on the motion.
 const COARSE_STEP: f64 = 16e-3;
@@ -17,6 +18,14 @@ const ACCURACY: f64 = 5e-4;
 const REPAIRS: usize = 8;
 /// A motion that has to be stretched by less than this is good enough.
 const STRETCH: f64 = 1.0005;
+/// A motion that has to be stretched by more than this is not good enough to be eased: its window was too narrow.
+const LAST_STRETCH: f64 = 1.003;
+/// Rounds of easing, and the time in which it comes and goes at an end in motion.
+const EASINGS: usize = 3;
+const EASING: f64 = 0.04;
+/// What may be left, for the first moments of a cruise that easing does not reach; and what rounding may add.
+const LEFT: f64 = 1e-6;
+pub(super) const ROUNDING: f64 = 1e-9;
 /// Shares of a limit that a repair leaves: what it aims at, and the least.
 const AIM: f64 = 0.9995;
 const LEAST_SHARE: f64 = 0.2;
@@ -42,6 +51,32 @@ impl Passage {
     /// No motion was found.
     pub(super) const NONE: Self = Self { pieces: Vec::new(), stretch: f64::INFINITY };
 
+    /// Whether it keeps all limits as it is.
+    pub(super) fn good(&self) -> bool {
+        self.stretch <= 1.0 + LEFT
+    }
+
+    /// Takes the stretching upon itself: the motion becomes slower all along, but not at ends in motion.
+    fn ease<const N: usize, P: JointPath<N>>(
+        &mut self,
+        path: &mut P,
+        joints: &TimingLimits<N>,
+        limits: &Limits,
+        window: &Window,
+    ) -> Result<(), TimingError<P::Error>> {
+        let fast = self.pieces.clone();
+        let mut factor = 1.0;
+        for _ in 0..EASINGS {
+            if self.stretch <= 1.0 + ROUNDING {
+                break;
+            }
+            factor *= self.stretch;
+            self.pieces = eased(&fast, factor, window);
+            self.stretch = judged(path, joints, limits, &self.pieces)?.1;
+        }
+        Ok(())
+    }
+
     /// Duration with the stretching.
     pub(super) fn duration(&self) -> f64 {
         if self.pieces.is_empty() { f64::INFINITY } else { duration(&self.pieces) * self.stretch }
@@ -55,6 +90,8 @@ pub(super) struct Workshop {
     program: Program,
     /// Derivatives with respect to w, per site and axis.
     derivatives: Vec<[f64; 3]>,
+    /// Limits of the path per site.
+    path_limits: Vec<[f64; 3]>,
     /// Share of each limit that is used, per site, axis and order.
     shares: Vec<[f64; 3]>,
 }
@@ -66,34 +103,29 @@ impl Workshop {
         &mut self,
         path: &mut P,
         joints: &TimingLimits<N>,
-        limits: &PathLimits,
+        limits: &Limits,
         window: &Window,
     ) -> Result<Passage, TimingError<P::Error>> {
         let coarse = crude::coordinate(path, joints, limits, window, COARSE_STEP)?;
-        self.set_sites(path, window, &coarse)?;
-        self.set_demands(joints, limits, window, coarse.step);
+        self.set_sites(path, limits, window, &coarse)?;
+        self.set_demands(joints, window, coarse.step);
         let solved = self.solver.solve(&self.program, COARSE_ACCURACY);
-        let Some(pieces) = self.pieces(solved, &coarse, window, limits.speed) else {
+        let Some(pieces) = self.pieces(solved, &coarse, window) else {
             return Ok(Passage::NONE);
         };
         let knots = crude::knots(duration(&pieces), STEP);
-        let coordinate = Coordinate::following(&pieces, knots, window.ends, limits.speed);
-        self.set_sites(path, window, &coordinate)?;
+        let coordinate = Coordinate::following(&pieces, knots, window.ends);
+        self.set_sites(path, limits, window, &coordinate)?;
         let mut best = Passage::NONE;
         for round in 0..=REPAIRS {
-            self.set_demands(joints, limits, window, coordinate.step);
+            self.set_demands(joints, window, coordinate.step);
             let solved = match round {
                 0 => self.solver.solve(&self.program, ACCURACY),
                 _ => self.solver.solve_again(&self.program, ACCURACY),
             };
-            let Some(pieces) = self.pieces(solved, &coordinate, window, limits.speed) else { break };
-            let mut check = Check::new(path, joints, limits);
-            let mut loads = Vec::with_capacity(2 * pieces.len());
-            for piece in &pieces {
-                loads.extend(check.halves(piece)?);
-            }
-            let load = loads.iter().fold(Load::NONE, |most, load| most.raised(load));
-            let passage = Passage { pieces, stretch: load.stretch().max(1.0) };
+            let Some(pieces) = self.pieces(solved, &coordinate, window) else { break };
+            let (loads, stretch) = judged(path, joints, limits, &pieces)?;
+            let passage = Passage { pieces, stretch };
             if passage.duration() < best.duration() {
                 best = passage;
             }
@@ -102,6 +134,9 @@ impl Workshop {
             }
             self.tighten(&loads, window, N + 1);
         }
+        if best.stretch <= LAST_STRETCH {
+            best.ease(path, joints, limits, window)?;
+        }
         Ok(best)
     }
 
@@ -109,10 +144,14 @@ impl Workshop {
     fn set_sites<const N: usize, P: JointPath<N>>(
         &mut self,
         path: &mut P,
+        limits: &Limits,
         window: &Window,
         coordinate: &Coordinate,
     ) -> Result<(), TimingError<P::Error>> {
         self.derivatives.clear();
+        self.path_limits.clear();
+        let place = |site: usize| coordinate.at(site).s.clamp(window.from, window.to);
+        let last = coordinate.sites() - 1;
         for site in 0..coordinate.sites() {
             let w = coordinate.at(site);
             let s = w.s.clamp(window.from, window.to);
@@ -126,33 +165,30 @@ impl Workshop {
                 ]);
             }
             self.derivatives.push([w.d1, w.d2, w.d3]);
+            // What holds between two sites has to be kept at both.
+            let around = limits.within(place(site.saturating_sub(1)), place((site + 1).min(last)));
+            self.path_limits.push([around.speed, around.acceleration, around.jerk]);
         }
         self.shares.clear();
         self.shares.resize(self.derivatives.len(), [1.0; 3]);
-        // At a held end the speed is the programmed one, and no unknown can change it.
-        for (end, site) in window.ends.into_iter().zip([0, coordinate.sites() - 1]) {
-            if end == End::Cruise {
+        // At a held end the speed may be the programmed one, and no unknown can change it.
+        for (end, site) in window.ends.into_iter().zip([0, last]) {
+            if !end.rests() {
                 self.shares[site * (N + 1) + N][0] = 1.0 + HELD_SLACK;
             }
         }
         Ok(())
     }
 
-    fn set_demands<const N: usize>(
-        &mut self,
-        joints: &TimingLimits<N>,
-        limits: &PathLimits,
-        window: &Window,
-        step: f64,
-    ) {
+    fn set_demands<const N: usize>(&mut self, joints: &TimingLimits<N>, window: &Window, step: f64) {
         let Program { demands, axes, held } = &mut self.program;
         *axes = N + 1;
-        *held = window.ends.map(|end| end == End::Cruise);
+        *held = window.ends.map(|end| !end.rests());
         demands.clear();
         for (index, (derivatives, shares)) in self.derivatives.iter().zip(&self.shares).enumerate() {
             let limits = match index % (N + 1) {
                 i if i < N => [joints.velocity[i], joints.acceleration[i], joints.jerk[i]],
-                _ => [limits.speed, limits.acceleration, limits.jerk],
+                _ => self.path_limits[index / (N + 1)],
             };
             demands.push(Demand::new(*derivatives, scaled(limits, *shares), step));
         }
@@ -160,13 +196,7 @@ impl Workshop {
 
     /// The motion in time that the solution stands for: one piece between two knots. None where it makes no
     /// sense.
-    fn pieces(
-        &self,
-        solved: bool,
-        coordinate: &Coordinate,
-        window: &Window,
-        speed: f64,
-    ) -> Option<Vec<TimingPiece>> {
+    fn pieces(&self, solved: bool, coordinate: &Coordinate, window: &Window) -> Option<Vec<TimingPiece>> {
         if !solved {
             return None;
         }
@@ -187,8 +217,7 @@ impl Workshop {
             if knot == 0 || knot == last {
                 let place = if knot == 0 { window.from } else { window.to };
                 let end = if knot == 0 { window.ends[0] } else { window.ends[1] };
-                let velocity = if end == End::Rest { 0.0 } else { speed };
-                state = PathState { position: place, velocity, ..PathState::default() };
+                state = PathState { position: place, velocity: end.speed(), ..PathState::default() };
             }
             state
         };
@@ -206,9 +235,9 @@ impl Workshop {
 
     /// Lowers the limits of both sites around half a piece by what it takes too much.
     fn tighten<const N: usize>(&mut self, loads: &[Load<N>], window: &Window, axes: usize) {
+        let held = window.ends.map(|end| !end.rests());
         for (half, load) in loads.iter().enumerate() {
-            let near_held = (window.ends[0] == End::Cruise && half < HELD_SITES)
-                || (window.ends[1] == End::Cruise && half + HELD_SITES >= loads.len());
+            let near_held = (held[0] && half < HELD_SITES) || (held[1] && half + HELD_SITES >= loads.len());
             for axis in 0..axes {
                 for order in 0..3 {
                     let share = if axis < N { load.joints[order][axis] } else { load.path[order] };
@@ -216,6 +245,9 @@ impl Workshop {
                         continue;
                     }
                     for site in [half, half + 1] {
+                        if (held[0] && site == 0) || (held[1] && site == loads.len()) {
+                            continue;
+                        }
                         let used = &mut self.shares[site * axes + axis][order];
                         *used = (*used * AIM / share).max(LEAST_SHARE);
                     }
@@ -223,6 +255,38 @@ impl Workshop {
             }
         }
     }
+}
+
+/// The loads of all half pieces, and the factor on time that they ask for.
+fn judged<const N: usize, P: JointPath<N>>(
+    path: &mut P,
+    joints: &TimingLimits<N>,
+    limits: &Limits,
+    pieces: &[TimingPiece],
+) -> Result<(Vec<Load<N>>, f64), TimingError<P::Error>> {
+    let mut check = Check::new(path, joints, limits);
+    let mut loads = Vec::with_capacity(2 * pieces.len());
+    for piece in pieces {
+        loads.extend(check.halves(piece)?);
+    }
+    let load = loads.iter().fold(Load::NONE, |most, load| most.raised(load));
+    Ok((loads, load.stretch().max(1.0)))
+}
+
+/// The pieces at 1/`factor` of their pace, which comes and goes smoothly at ends in motion.
+fn eased(pieces: &[TimingPiece], factor: f64, window: &Window) -> Vec<TimingPiece> {
+    let whole = duration(pieces);
+    let width = EASING.min(whole / 2.0);
+    let [first, last] = window.ends.map(|end| !end.rests());
+    paced(pieces, |time| {
+        let step = |held: bool, time: f64| {
+            let x = if held { (time / width).clamp(0.0, 1.0) } else { 1.0 };
+            [x * x * x * (10.0 - 15.0 * x + 6.0 * x * x), 30.0 * x * x * (1.0 - x) * (1.0 - x) / width]
+        };
+        let ([rise, rising], [fall, falling]) = (step(first, time), step(last, whole - time));
+        let loss = 1.0 - 1.0 / factor;
+        [1.0 - loss * rise * fall, loss * (rise * falling - rising * fall)]
+    })
 }
 
 fn scaled(limits: [f64; 3], shares: [f64; 3]) -> [f64; 3] {
