@@ -145,16 +145,14 @@ fn of_move(step: &MoveInstruction) -> Disposition {
         refused("coordinated motion with a station is not built")
     } else if step.target.is_none() || !step.external.is_empty() || !step.others.is_empty() {
         GROUPS
-    } else if step.interpolation == Interpolation::Spline {
-        refused("splines are not built")
     } else if step.until.is_some() {
         refused("moves that an input ends are not built")
     } else if !step.other_tags.is_empty() {
         refused("a tag of this move would change the motion and is not built")
     } else if step.no_wait {
         Accepted("the next instruction waits for the end of the move")
-    } else if step.corner_radius.is_some() || step.continuous || !is_zero(step.position_level.as_ref()) {
-        Accepted("zones are not built: the robot stops exactly on the point")
+    } else if step.interpolation == Interpolation::Joint && !is_zero(step.position_level.as_ref()) {
+        Accepted("a joint move stops exactly on its point")
     } else {
         Executed
     }

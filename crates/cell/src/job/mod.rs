@@ -54,7 +54,7 @@ pub use program::{Header, Job, JobFile, Statement};
 pub use set::JobSet;
 pub use step::{
     Action, ArcCondition, ArcPart, CircularArc, LinearSpeedUnit, Location, Move, MovePath, Note, Output,
-    Speed, SpeedOrigin, Step, Target, Zone,
+    Speed, SpeedOrigin, SplinePiece, Step, Target, Zone,
 };
 pub use world::World;
 

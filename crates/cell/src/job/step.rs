@@ -121,12 +121,12 @@ pub struct Move {
 pub enum MovePath {
     /// MOVJ: all joints together.
     Joint,
-    /// MOVL, and the first point of MOVC: a line.
+    /// MOVL, and the first point of MOVC and of MOVS: a line.
     Linear,
     /// MOVC: along a circle.
     Circular(Box<CircularArc>),
-    /// MOVS: a spline point.
-    Spline,
+    /// MOVS: a piece of the spline through the points of its run.
+    Spline(SplinePiece),
     /// IMOV: a line by an increment in a frame.
     Incremental {
         /// The increment's frame; `None` where the increment counts pulses, axis by axis.
@@ -152,6 +152,15 @@ pub enum ArcPart {
     First,
     /// From the second point to the third: a further point of a chain.
     Second,
+}
+
+/// A piece of the spline through the points of a run of MOVS.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SplinePiece {
+    /// All points of the run, in the order in which they are passed; at least three.
+    pub points: Arc<[Target]>,
+    /// Index of the point that the piece ends in, 1 or more; it begins in the point before.
+    pub end: usize,
 }
 
 /// A point that a move goes to.
@@ -290,12 +299,12 @@ pub enum Note {
     },
     /// The line has no speed.
     SpeedSupplied(SpeedKind, SpeedOrigin),
-    /// The point would be passed without stopping; the robot stops on it.
-    StopsInZone(Zone),
     /// `NWAIT` or another tag that is accepted without effect.
     TagWithoutEffect(&'static str),
     /// A MOVC with fewer than three points in its run: the line goes straight.
     ArcTooShort,
+    /// A MOVS with fewer than three points in its run: the line goes straight.
+    SplineTooShort,
     /// The two halves of an arc have different speeds; the whole arc takes the end point's.
     ArcSpeedsDiffer,
 }
@@ -309,9 +318,11 @@ impl fmt::Display for Note {
             Self::SpeedSupplied(kind, origin) => {
                 write!(f, "{} is missing, taken from {origin}", kind.tag().trim_end_matches('='))
             }
-            Self::StopsInZone(zone) => write!(f, "the robot stops exactly on this point ({zone})"),
             Self::TagWithoutEffect(tag) => write!(f, "{tag} has no effect"),
             Self::ArcTooShort => write!(f, "fewer than three MOVC points in a row: the robot goes straight"),
+            Self::SplineTooShort => {
+                write!(f, "fewer than three MOVS points in a row: the robot goes straight")
+            }
             Self::ArcSpeedsDiffer => write!(f, "the arc runs at the speed of its end point"),
         }
     }

@@ -5,6 +5,7 @@ use seamline::kinematics::{InverseError, JointJet};
 use seamline::path::{Measure, Path};
 
 use super::arm::PlanningArm;
+use super::route::Route;
 use super::timing::JointPath;
 
 /// Greatest change of a joint between two places of the table, rad: far below what separates two branches.
@@ -12,6 +13,8 @@ const STEP: f64 = 0.1;
 /// Distance of the table's places, at most: metres, and radians of the tool's turn.
 const SPACING: f64 = 5e-3;
 const TURN_SPACING: f64 = 0.02;
+/// Fewest and most places of one path.
+const STEPS: [f64; 2] = [4.0, 20_000.0];
 /// A step is halved this often before a change is called a jump: 5 mm become 5 nm.
 const HALVINGS: u32 = 20;
 /// At the last halving a branch goes on in another one if no joint changes by more than this, rad: the path crosses the
@@ -43,7 +46,7 @@ pub enum FollowError {
 #[derive(Debug, Clone)]
 pub struct PathJoints<'a, const N: usize, K> {
     kinematics: &'a K,
-    path: Path,
+    route: Route,
     tcp_from_flange: Pose,
     /// Joints at rising path coordinates, from 0 to the length.
     table: Vec<(f64, [f64; N])>,
@@ -56,34 +59,27 @@ impl<'a, const N: usize, K: PlanningArm<N>> PathJoints<'a, N, K> {
     /// The path coordinate where the joints cannot follow any further, and why.
     pub fn follow(
         kinematics: &'a K,
-        path: &Path,
+        route: impl Into<Route>,
         flange_from_tcp: &Pose,
         start: &[f64; N],
     ) -> Result<Self, (f64, FollowError)> {
         let mut joints = Self {
             kinematics,
-            path: *path,
+            route: route.into(),
             tcp_from_flange: flange_from_tcp.inverse(),
             table: vec![(0.0, *start)],
         };
-        let length = path.length();
-        let steps = joints.steps();
         let mut at = 0.0;
-        for step in 1..=steps {
-            // The last place is the end itself, not the sum of steps.
-            let to = if step == steps { length } else { length * step as f64 / steps as f64 };
-            joints.follow_to(&mut at, to)?;
+        for index in 0..joints.route.paths().len() {
+            let (from, end) = (joints.route.start_of(index), joints.route.ends()[index]);
+            let steps = steps(&joints.route.paths()[index]);
+            for step in 1..=steps {
+                // The last place is the end itself, not the sum of steps.
+                let to = if step == steps { end } else { from + (end - from) * step as f64 / steps as f64 };
+                joints.follow_to(&mut at, to)?;
+            }
         }
         Ok(joints)
-    }
-
-    /// How many places the table has at least.
-    fn steps(&self) -> usize {
-        let length = self.path.length();
-        let turn = self.path.pose(0.0).rotation.angle_to(&self.path.pose(length).rotation);
-        let by_length = if self.path.measure() == Measure::Length { length / SPACING } else { 0.0 };
-        // A path longer than 100 m gets a coarser table, which halving refines where needed.
-        by_length.max(turn / TURN_SPACING).ceil().clamp(32.0, 20_000.0) as usize
     }
 
     fn follow_to(&mut self, at: &mut f64, to: f64) -> Result<(), (f64, FollowError)> {
@@ -117,13 +113,13 @@ impl<'a, const N: usize, K: PlanningArm<N>> PathJoints<'a, N, K> {
 
     /// The joints at `s` on the last ones' branch, and the greatest change.
     fn solve(&self, s: f64) -> Result<([f64; N], f64), InverseError> {
-        let q = self.kinematics.same_branch(&(self.path.pose(s) * self.tcp_from_flange), self.last())?;
+        let q = self.kinematics.same_branch(&(self.route.pose(s) * self.tcp_from_flange), self.last())?;
         Ok((q, self.change(&q)))
     }
 
     /// The joints at `s` on whatever branch, if they hardly differ from the last ones.
     fn crossing(&self, s: f64) -> Option<[f64; N]> {
-        let pose = self.path.pose(s) * self.tcp_from_flange;
+        let pose = self.route.pose(s) * self.tcp_from_flange;
         self.kinematics.inverse_nearest(&pose, self.last()).ok().filter(|q| self.change(q) < CROSSING)
     }
 
@@ -159,7 +155,7 @@ impl<'a, const N: usize, K: PlanningArm<N>> PathJoints<'a, N, K> {
 
     /// The flange's motion along the path coordinate.
     fn flange(&self, s: f64) -> PoseJet {
-        self.path.jet(s).attached(&self.tcp_from_flange)
+        self.route.jet(s).attached(&self.tcp_from_flange)
     }
 
     /// Joints near `s`, between the table's places.
@@ -171,11 +167,20 @@ impl<'a, const N: usize, K: PlanningArm<N>> PathJoints<'a, N, K> {
     }
 }
 
+/// How many places of a path the table has at least.
+fn steps(path: &Path) -> usize {
+    let length = path.length();
+    let turn = path.pose(0.0).rotation.angle_to(&path.pose(length).rotation);
+    let by_length = if path.measure() == Measure::Length { length / SPACING } else { 0.0 };
+    // A path longer than 100 m gets a coarser table, which halving refines where needed.
+    by_length.max(turn / TURN_SPACING).ceil().clamp(STEPS[0], STEPS[1]) as usize
+}
+
 impl<const N: usize, K: PlanningArm<N>> JointPath<N> for PathJoints<'_, N, K> {
     type Error = InverseError;
 
     fn length(&self) -> f64 {
-        self.path.length()
+        self.route.length()
     }
 
     fn jet(&mut self, s: f64) -> Result<JointJet<N>, InverseError> {
@@ -208,7 +213,7 @@ mod tests {
             let (start, end) = (turned(-0.4), turned(0.4));
             let path = Path::line(&start, &Pose::from_parts(end.translation, end.rotation));
             let seed = arm.inverse_nearest(&start, &[0.1, 0.2, 0.1, -1.5, 0.4, 1.8]).unwrap();
-            let joints = PathJoints::follow(&arm, &path, &Pose::identity(), &seed);
+            let joints = PathJoints::follow(&arm, path, &Pose::identity(), &seed);
             let joints = joints.unwrap_or_else(|error| panic!("{distance}: {error:?}"));
             for pair in joints.table.windows(2) {
                 let change = (0..6).map(|k| (pair[1].1[k] - pair[0].1[k]).abs()).fold(0.0, f64::max);

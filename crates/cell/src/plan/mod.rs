@@ -6,10 +6,16 @@
 //! ```
 
 mod arm;
+mod corner;
+mod cut;
 mod error;
+mod hand_out;
 mod joint_path;
 mod planner;
+mod remark;
 mod resolve;
+mod route;
+mod run;
 mod speed;
 mod suggest;
 pub mod timing;
@@ -20,3 +26,4 @@ pub use arm::{Arm, PlanningArm};
 pub use error::{Place, PlanError, Problem};
 pub use joint_path::{FollowError, PathJoints};
 pub use planner::{Planned, Planner};
+pub use route::Route;

@@ -1,5 +1,7 @@
 //! From steps of a job to blocks for the cycle.
 
+use std::collections::VecDeque;
+
 use seamline::control::{Block, Command, Motion};
 use seamline::geometry::Pose;
 use seamline::otg::{Input, Limits, State, Synchronization, calculate};
@@ -7,19 +9,25 @@ use seamline::otg::{Input, Limits, State, Synchronization, calculate};
 use super::arm::{Arm, PlanningArm};
 use super::error::{PlanError, Problem};
 use super::resolve::{self, Goal, ToolPose, goal};
+use super::run::{Link, Run, Stops};
 use super::speed;
 use super::tool_path;
 use super::workspace;
 use crate::cell::Cell;
-use crate::job::{Action, ArcCondition, ArcPart, Frame, Location, Move, MovePath, Note, Speed, Step};
+use crate::job::{Action, ArcCondition, ArcPart, Frame, Location, Move, MovePath, Speed, Step, Zone};
 use crate::record::{SegmentInfo, SegmentKind};
 
-/// What a step becomes.
-#[derive(Debug, Clone, Default)]
+/// What a step, or a part of it, becomes. A step without motion has one of these; a move has several where it is handed over in
+/// parts, and one more for the corner at its end.
+#[derive(Debug, Clone)]
 pub struct Planned<const N: usize> {
+    /// The instruction.
+    pub at: Location,
+    /// What it does, where this is the first of its parts.
+    pub action: Option<Action>,
     /// For the cycle's queue, in this order.
     pub commands: Vec<Command<N>>,
-    /// What the motion is held against afterwards.
+    /// What the motion is held against afterwards. One with the number of an earlier one takes its place.
     pub segment: Option<SegmentInfo>,
     /// What the operator should know.
     pub notices: Vec<String>,
@@ -27,16 +35,43 @@ pub struct Planned<const N: usize> {
     pub duration: f64,
 }
 
+impl<const N: usize> Planned<N> {
+    /// The first part of a step.
+    pub(super) fn of(step: &Step) -> Self {
+        let notices = step.notes.iter().map(ToString::to_string).collect();
+        Self { action: Some(step.action.clone()), notices, ..Self::part(&step.at) }
+    }
+
+    /// A part of a step, but for the first.
+    pub(super) fn part(at: &Location) -> Self {
+        let (commands, notices) = (Vec::new(), Vec::new());
+        Self { at: at.clone(), action: None, commands, segment: None, notices, duration: 0.0 }
+    }
+
+    /// What a move begins with.
+    pub(super) fn begin(link: &Link<N>) -> Self {
+        let mut planned = Self::of(&link.step);
+        planned.notices.extend(link.notices.iter().cloned());
+        planned
+    }
+}
+
 /// The planner's place in a job: what the next step starts from.
+///
+/// Moves of the tool centre point that may run on into the next are held back until enough of the way is known: [`Planner::take`]
+/// hands out what is settled, [`Planner::finish`] the rest, which then ends at rest.
 #[derive(Debug, Clone)]
 pub struct Planner<'a, const N: usize, K> {
     pub(super) arm: &'a Arm<N, K>,
     pub(super) cell: &'a Cell,
-    /// Where the arm is when all planned commands are done.
+    /// Where the arm is when all that was handed out is done.
     pub(super) joints: [f64; N],
     pub(super) tool: ToolPose,
     pub(super) arc: bool,
     segment: u32,
+    pub(super) run: Run<N>,
+    /// Steps taken and not yet looked at.
+    waiting: VecDeque<Step>,
 }
 
 impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
@@ -45,10 +80,11 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
     /// # Errors
     /// [`Problem::UnknownTool`] where the cell has no tool 0.
     pub fn new(arm: &'a Arm<N, K>, cell: &'a Cell, joints: [f64; N]) -> Result<Self, Problem> {
-        Ok(Self { arm, cell, joints, tool: ToolPose::of(cell, 0)?, arc: false, segment: 0 })
+        let (tool, run) = (ToolPose::of(cell, 0)?, Run::default());
+        Ok(Self { arm, cell, joints, tool, arc: false, segment: 0, run, waiting: VecDeque::new() })
     }
 
-    /// The joints when all that is planned is done.
+    /// The joints when all that was handed out is done.
     #[must_use]
     pub fn joints(&self) -> &[f64; N] {
         &self.joints
@@ -60,21 +96,85 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         &self.tool.flange_from_tcp
     }
 
-    /// The commands of a step. Steps that neither move nor take time (outputs, messages) have none.
+    /// The commands of one step alone, which ends at rest. Steps that neither move nor take time (outputs, messages) have none.
     ///
     /// # Errors
     /// [`PlanError`] with the line; the planner then still stands where it was.
     pub fn plan(&mut self, step: &Step) -> Result<Planned<N>, PlanError> {
         let before = self.clone();
-        let result = self.plan_action(step);
-        result.map_err(|problem| {
+        let mut parts = Vec::new();
+        let result = self.take(step, &mut parts).and_then(|()| self.finish(&mut parts));
+        if let Err(error) = result {
             *self = before;
-            PlanError { at: step.at.clone(), problem }
-        })
+            return Err(error);
+        }
+        let mut whole = Planned::of(step);
+        whole.notices.clear();
+        for part in parts {
+            whole.commands.extend(part.commands);
+            whole.notices.extend(part.notices);
+            whole.segment = part.segment.or(whole.segment);
+            whole.duration += part.duration;
+        }
+        Ok(whole)
+    }
+
+    /// Takes the next step, and hands out what is settled by now.
+    ///
+    /// # Errors
+    /// [`PlanError`] with the line of the step at fault, which need not be this one. What was handed out before stays good; the
+    /// next call goes on as if the step at fault had been done, where its target has joints.
+    pub fn take(&mut self, step: &Step, out: &mut Vec<Planned<N>>) -> Result<(), PlanError> {
+        self.waiting.push_back(step.clone());
+        self.take_waiting(out)
+    }
+
+    /// Hands out all that is left, ending at rest.
+    ///
+    /// # Errors
+    /// As [`Planner::take`]; then call it again.
+    pub fn finish(&mut self, out: &mut Vec<Planned<N>>) -> Result<(), PlanError> {
+        self.take_waiting(out)?;
+        self.end_run(None, out)
+    }
+
+    fn take_waiting(&mut self, out: &mut Vec<Planned<N>>) -> Result<(), PlanError> {
+        while let Some(step) = self.waiting.front().cloned() {
+            self.take_first(&step, out)?;
+        }
+        Ok(())
+    }
+
+    /// Takes the first waiting step. It stays waiting where a move before it is at fault.
+    fn take_first(&mut self, step: &Step, out: &mut Vec<Planned<N>>) -> Result<(), PlanError> {
+        match &step.action {
+            Action::Move(r#move) if r#move.path != MovePath::Joint => self.take_path_move(step, r#move, out),
+            Action::Output(_) | Action::Message { .. } | Action::Accepted { .. } | Action::ArcSet(_)
+                if !self.run.is_empty() =>
+            {
+                self.waiting.pop_front();
+                self.run.add_aside(step.clone());
+                Ok(())
+            }
+            action => {
+                let stop = matches!(action, Action::Move(_)).then_some(Stops(BEFORE_JOINT_MOVE));
+                self.end_run(stop, out)?;
+                self.waiting.pop_front();
+                let planned = self.plan_alone(step).map_err(|problem| self.leave_out(step, problem))?;
+                out.push(planned);
+                Ok(())
+            }
+        }
+    }
+
+    /// The state that the next step finds after one that has no plan.
+    fn leave_out(&mut self, step: &Step, problem: Problem) -> PlanError {
+        self.skip(step);
+        PlanError { at: step.at.clone(), problem }
     }
 
     /// Goes on from a step's target as if it had been reached, where the target has joints.
-    pub fn skip(&mut self, step: &Step) {
+    fn skip(&mut self, step: &Step) {
         let Action::Move(r#move) = &step.action else { return };
         let target = goal(&r#move.target, self.cell, self.arm, &self.joints);
         if let Ok(Goal { joints: Ok(joints), tool, .. }) = target {
@@ -82,18 +182,33 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         }
     }
 
-    fn plan_action(&mut self, step: &Step) -> Result<Planned<N>, Problem> {
-        let mut planned = match &step.action {
-            Action::Move(r#move) => self.plan_move(&step.at, r#move)?,
-            Action::ArcOn(condition) => self.arc_on(&step.at, condition)?,
-            Action::ArcOff(condition) => self.arc_off(&step.at, condition)?,
-            Action::Dwell { seconds } => self.dwell(&step.at, *seconds),
+    /// Gives up the run from the piece with this number on; the moves after it are taken again.
+    pub(super) fn give_up(&mut self, index: usize, problem: Problem) -> PlanError {
+        let step = self.run.piece(index).map(|piece| piece.link.step.clone());
+        let after = self.run.give_up_after(index);
+        for step in after.into_iter().rev() {
+            self.waiting.push_front(step);
+        }
+        let at = step.as_ref().map_or(Location { job: "".into(), line: 0 }, |step| step.at.clone());
+        if let Some(step) = step {
+            self.skip(&step);
+        }
+        PlanError { at, problem }
+    }
+
+    /// A step that begins and ends at rest.
+    fn plan_alone(&mut self, step: &Step) -> Result<Planned<N>, Problem> {
+        let mut planned = Planned::of(step);
+        match &step.action {
+            Action::Move(r#move) => self.joint_move(r#move, &mut planned)?,
+            Action::ArcOn(condition) => self.arc_on(condition, &mut planned)?,
+            Action::ArcOff(condition) => self.arc_off(condition, &mut planned)?,
+            Action::Dwell { seconds } => self.dwell(*seconds, &mut planned),
             Action::Unsupported { text, reason } => {
                 return Err(Problem::Refused { text: text.clone(), reason: reason.clone() });
             }
-            _ => Planned::default(),
-        };
-        planned.notices.splice(0..0, step.notes.iter().map(Note::to_string));
+            _ => {}
+        }
         Ok(planned)
     }
 
@@ -102,22 +217,22 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         self.segment
     }
 
-    fn dwell(&mut self, at: &Location, duration: f64) -> Planned<N> {
-        let segment = self.next_segment();
-        let info = SegmentInfo {
+    fn dwell(&mut self, duration: f64, planned: &mut Planned<N>) {
+        let (segment, line) = (self.next_segment(), planned.at.line);
+        planned.segment = Some(SegmentInfo {
             segment,
-            line: at.line,
+            line,
             kind: SegmentKind::Dwell,
             speed: None,
             arc: self.arc,
             constant_part: None,
-        };
-        let commands = vec![Command::Dwell { line: at.line, segment, duration }];
-        Planned { commands, segment: Some(info), notices: Vec::new(), duration }
+        });
+        planned.commands.push(Command::Dwell { line, segment, duration });
+        planned.duration += duration;
     }
 
     /// Gas, then the arc, then the time to form the pool.
-    fn arc_on(&mut self, at: &Location, condition: &ArcCondition) -> Result<Planned<N>, Problem> {
+    fn arc_on(&mut self, condition: &ArcCondition, planned: &mut Planned<N>) -> Result<(), Problem> {
         let file = condition.file.map(|number| {
             let missing = Problem::UnknownCondition { kind: "ASF", number, table: "[[arc_start]]" };
             self.cell.arc_start(number).ok_or(missing)
@@ -125,101 +240,145 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         let file = file.transpose()?;
         let preflow = file.map_or(0.0, |file| file.gas_preflow);
         let hold = condition.seconds.or(file.map(|file| file.dwell)).unwrap_or(0.0);
-        let mut planned = self.dwell(at, preflow);
+        self.dwell(preflow, planned);
         planned.commands.push(Command::Arc { on: true });
         self.arc = true;
-        let hold = self.dwell(at, hold);
-        planned.commands.extend(hold.commands);
-        planned.duration += hold.duration;
-        planned.segment = hold.segment;
-        Ok(planned)
+        self.dwell(hold, planned);
+        Ok(())
     }
 
     /// The time to fill the crater, then the arc out.
-    fn arc_off(&mut self, at: &Location, condition: &ArcCondition) -> Result<Planned<N>, Problem> {
+    fn arc_off(&mut self, condition: &ArcCondition, planned: &mut Planned<N>) -> Result<(), Problem> {
         let file = condition.file.map(|number| {
             let missing = Problem::UnknownCondition { kind: "AEF", number, table: "[[arc_end]]" };
             self.cell.arc_end(number).ok_or(missing)
         });
         let crater = condition.seconds.or(file.transpose()?.map(|file| file.crater_dwell)).unwrap_or(0.0);
-        let mut planned = self.dwell(at, crater);
+        self.dwell(crater, planned);
         planned.commands.push(Command::Arc { on: false });
         self.arc = false;
-        Ok(planned)
+        Ok(())
     }
 
-    fn plan_move(&mut self, at: &Location, r#move: &Move) -> Result<Planned<N>, Problem> {
-        let target = |target| goal(target, self.cell, self.arm, &self.joints);
-        match &r#move.path {
-            MovePath::Joint => {
-                let goal = target(&r#move.target)?;
-                self.joint_move(at, r#move, &goal)
+    /// A move of the tool centre point goes on with the run, or begins one.
+    fn take_path_move(
+        &mut self,
+        step: &Step,
+        r#move: &Move,
+        out: &mut Vec<Planned<N>>,
+    ) -> Result<(), PlanError> {
+        if !self.run.is_empty() && self.tool_of(r#move).is_some_and(|tool| tool != self.tool) {
+            self.end_run(Some(Stops("the next move has another tool")), out)?;
+        }
+        let link = match self.link(step, r#move) {
+            Ok(link) => link,
+            Err(problem) => {
+                self.end_run(None, out)?;
+                self.waiting.pop_front();
+                return Err(self.leave_out(step, problem));
             }
-            MovePath::Linear => {
-                let goal = target(&r#move.target)?;
-                self.tool = goal.tool;
-                let path = tool_path::line(&self.pose(), &goal.base_from_tcp);
-                self.path_move(at, r#move, &path, Some(&goal))
-            }
+        };
+        if link.path.length() == 0.0 {
+            return self.take_move_without_way(&link, out);
+        }
+        let rests = link.pass.is_none() || !link.travels();
+        if !link.travels() && !self.run.is_empty() {
+            self.end_run(Some(Stops("the next move turns on the spot")), out)?;
+        }
+        if let Err(stops) = self.run.push(&link, &mut self.segment) {
+            self.end_run(Some(stops), out)?;
+            self.run.begin(&link, &mut self.segment);
+        }
+        self.waiting.pop_front();
+        if rests { self.end_run(None, out) } else { self.advance(false, out) }
+    }
+
+    /// A move to where the run leads already, such as the first MOVC of an arc, does not stop it unless it is to.
+    fn take_move_without_way(&mut self, link: &Link<N>, out: &mut Vec<Planned<N>>) -> Result<(), PlanError> {
+        if link.pass.is_none() || self.run.is_empty() {
+            self.end_run(None, out)?;
+            let segment = Some(link.info(self.next_segment()));
+            out.push(Planned { segment, ..Planned::begin(link) });
+        } else {
+            self.run.add_aside(link.step.clone());
+        }
+        self.waiting.pop_front();
+        Ok(())
+    }
+
+    fn tool_of(&self, r#move: &Move) -> Option<ToolPose> {
+        let number = match &r#move.path {
+            MovePath::Incremental { .. } => return None,
+            _ => r#move.target.position.tool,
+        };
+        ToolPose::of(self.cell, number).ok()
+    }
+
+    /// A move with its geometry.
+    fn link(&mut self, step: &Step, r#move: &Move) -> Result<Link<N>, Problem> {
+        let reference = self.run.last().and_then(|link| link.goal?.joints.ok()).unwrap_or(self.joints);
+        let target = |target| goal(target, self.cell, self.arm, &reference);
+        let mut notices = Vec::new();
+        let (path, goal) = match &r#move.path {
             MovePath::Circular(arc) => {
                 let [first, second, third] = &arc.points;
                 let goals = [target(first)?, target(second)?, target(third)?];
-                self.circular_move(at, r#move, &goals, arc.part)
+                self.tool = goals[2].tool;
+                let poses = goals.each_ref().map(|goal| goal.base_from_tcp);
+                let (path, straight) = tool_path::arc(&self.pose(), &poses, arc.part);
+                if straight {
+                    notices
+                        .push("the three points of the arc lie on one line: the robot goes straight".into());
+                }
+                let [_, second, third] = goals;
+                (path, Some(if arc.part == ArcPart::First { second } else { third }))
             }
-            MovePath::Incremental { frame } => self.incremental_move(at, r#move, *frame),
-            MovePath::Spline => {
-                let reason = "spline moves are not executed yet".into();
-                Err(Problem::Refused { text: format!("MOVS {}", r#move.target.name), reason })
+            MovePath::Incremental { frame } => {
+                (tool_path::line(&self.pose(), &self.increment(r#move, *frame)?), None)
             }
-        }
-    }
-
-    /// A piece of the circle through three points; straight where they do not give a circle.
-    fn circular_move(
-        &mut self,
-        at: &Location,
-        r#move: &Move,
-        goals: &[Goal<N>; 3],
-        part: ArcPart,
-    ) -> Result<Planned<N>, Problem> {
-        self.tool = goals[2].tool;
-        let poses = goals.each_ref().map(|goal| goal.base_from_tcp);
-        let (path, straight) = tool_path::arc(&self.pose(), &poses, part);
-        let end = if part == ArcPart::First { &goals[1] } else { &goals[2] };
-        let mut planned = self.path_move(at, r#move, &path, Some(end))?;
-        if straight {
-            planned
-                .notices
-                .push("the three points of the arc lie on one line: the robot goes straight".into());
-        }
-        Ok(planned)
-    }
-
-    /// A line by an increment: in a frame, or joint by joint in pulses.
-    fn incremental_move(
-        &mut self,
-        at: &Location,
-        r#move: &Move,
-        frame: Option<Frame>,
-    ) -> Result<Planned<N>, Problem> {
-        let end = match frame {
-            Some(frame) => tool_path::increment(&self.pose(), &r#move.target, frame, self.cell)?,
-            None => {
-                let joints = resolve::pulse_increment(&r#move.target, self.arm, &self.joints)?;
-                self.arm.kinematics.forward(&joints) * self.tool.flange_from_tcp
+            MovePath::Spline(piece) => {
+                let goals = piece.points.iter().map(target).collect::<Result<Vec<_>, _>>()?;
+                let goal = goals.get(piece.end).copied();
+                self.tool = goal.map_or(self.tool, |goal| goal.tool);
+                let poses: Vec<Pose> = goals.iter().map(|goal| goal.base_from_tcp).collect();
+                (tool_path::spline_piece(&poses, piece)?, goal)
+            }
+            MovePath::Linear | MovePath::Joint => {
+                let goal = target(&r#move.target)?;
+                self.tool = goal.tool;
+                (tool_path::line(&self.pose(), &goal.base_from_tcp), Some(goal))
             }
         };
-        let path = tool_path::line(&self.pose(), &end);
-        self.path_move(at, r#move, &path, None)
+        workspace::check_path(&path, &self.cell.safety)?;
+        let limits = speed::path_limits(&path, r#move, &self.cell.cartesian)?;
+        let pass = tool_path::pass(&r#move.zone, &self.cell.job);
+        Ok(Link { step: step.clone(), path, limits, goal, pass, arc: self.arc, notices })
+    }
+
+    /// Where an increment leads: in a frame, or joint by joint in pulses.
+    fn increment(&self, r#move: &Move, frame: Option<Frame>) -> Result<Pose, Problem> {
+        match frame {
+            Some(frame) => tool_path::increment(&self.pose(), &r#move.target, frame, self.cell),
+            None => {
+                let from = self.run.last().and_then(|link| link.goal?.joints.ok()).unwrap_or(self.joints);
+                let joints = resolve::pulse_increment(&r#move.target, self.arm, &from)?;
+                Ok(self.arm.kinematics.forward(&joints) * self.tool.flange_from_tcp)
+            }
+        }
     }
 
     /// The tool centre point where the plan stands.
     pub(super) fn pose(&self) -> Pose {
-        self.arm.kinematics.forward(&self.joints) * self.tool.flange_from_tcp
+        let at_rest = || self.arm.kinematics.forward(&self.joints) * self.tool.flange_from_tcp;
+        self.run.end().unwrap_or_else(at_rest)
     }
 
     /// All joints together, each within its own limits.
-    fn joint_move(&mut self, at: &Location, r#move: &Move, goal: &Goal<N>) -> Result<Planned<N>, Problem> {
+    fn joint_move(&mut self, r#move: &Move, planned: &mut Planned<N>) -> Result<(), Problem> {
+        let goal = goal(&r#move.target, self.cell, self.arm, &self.joints)?;
+        if r#move.zone != Zone::Exact {
+            planned.notices.push(format!("the robot stops exactly on this point ({})", r#move.zone));
+        }
         let name = || r#move.target.name.to_string();
         let target = goal.joints.map_err(|error| Problem::Unreachable { name: name(), error })?;
         let Speed::JointPercent(percent) = r#move.speed else {
@@ -230,33 +389,31 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             .map_err(|error| Problem::Generator { name: name(), reason: error.to_string() })?;
         let tool = &goal.tool.flange_from_tcp;
         workspace::check_joint_move(&trajectory, &self.arm.kinematics, tool, &self.cell.safety)?;
-        let segment = self.next_segment();
-        let block = Block {
-            line: at.line,
+        let (segment, line) = (self.next_segment(), planned.at.line);
+        planned.commands.push(Command::Move(Block {
+            line,
             segment,
             flange_from_tcp: goal.tool.flange_from_tcp,
             starts_at_rest: true,
             ends_at_rest: true,
             motion: Motion::Joint(trajectory),
-        };
-        let info = SegmentInfo {
+        }));
+        planned.segment = Some(SegmentInfo {
             segment,
-            line: at.line,
+            line,
             kind: SegmentKind::Joint,
             speed: None,
             arc: self.arc,
             constant_part: None,
-        };
-        self.joints = target;
-        self.tool = goal.tool;
-        let commands = vec![Command::Move(block)];
-        Ok(Planned { commands, segment: Some(info), notices: Vec::new(), duration: trajectory.duration() })
-    }
-
-    pub(super) fn number_segment(&mut self) -> u32 {
-        self.next_segment()
+        });
+        planned.duration = trajectory.duration();
+        (self.joints, self.tool) = (target, goal.tool);
+        Ok(())
     }
 }
+
+/// Why the robot stops before a joint move.
+const BEFORE_JOINT_MOVE: &str = "a joint move follows";
 
 /// Rest to rest at a share of the joints' speeds. ACC and DEC are shares too; which side of the acceleration limits
 /// they mean depends on the joint's direction.

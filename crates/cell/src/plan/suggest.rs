@@ -16,10 +16,10 @@ const PLACES: u32 = 200;
 #[derive(Debug)]
 pub(super) struct Trouble<'a, const N: usize, K> {
     pub(super) kinematics: &'a K,
-    pub(super) path: &'a Path,
+    pub(super) path: Path,
     pub(super) flange_from_tcp: &'a Pose,
     /// Joints at the start.
-    pub(super) start: &'a [f64; N],
+    pub(super) start: [f64; N],
     /// Programmed speed along the path.
     pub(super) speed: f64,
 }
@@ -37,7 +37,7 @@ impl<const N: usize, K: PlanningArm<N>> Trouble<'_, N, K> {
                 for degrees in [degrees, -degrees] {
                     let path = self.path.tilted(&Rotation::from_scaled_axis(axis * degrees.to_radians()));
                     let start = path.pose(0.0) * self.flange_from_tcp.inverse();
-                    let found = self.kinematics.inverse_nearest(&start, self.start).ok();
+                    let found = self.kinematics.inverse_nearest(&start, &self.start).ok();
                     if found.is_some_and(|start| self.holds(&path, &start)) {
                         return Some(format!(
                             "it works with the torch tilted by {degrees:.0} deg about its {name} axis"
@@ -51,8 +51,8 @@ impl<const N: usize, K: PlanningArm<N>> Trouble<'_, N, K> {
 
     fn configuration(&self) -> Option<String> {
         let start = self.path.pose(0.0) * self.flange_from_tcp.inverse();
-        let branches = self.kinematics.inverse_branches(&start, self.start).ok()?;
-        let works = branches.as_slice().iter().find(|q| self.holds(self.path, q))?;
+        let branches = self.kinematics.inverse_branches(&start, &self.start).ok()?;
+        let works = branches.as_slice().iter().find(|q| self.holds(&self.path, q))?;
         let c = self.kinematics.configuration(works);
         let flags = [c.no_flip, c.lower_arm, c.rear, c.r_beyond_180, c.t_beyond_180, c.s_beyond_180];
         let digits: Vec<_> = flags.map(|flag| if flag { "1" } else { "0" }).into();
@@ -93,11 +93,11 @@ mod tests {
         let arm = SixAxisArm::from(models::ar2010());
         let flange_from_tcp = Pose::identity();
         let (path, start) = line(&arm, 0.003);
-        let trouble = |path, start, speed| Trouble {
+        let trouble = |path: &Path, start: &[f64; 6], speed| Trouble {
             kinematics: &arm,
-            path,
+            path: *path,
             flange_from_tcp: &flange_from_tcp,
-            start,
+            start: *start,
             speed,
         };
         let near = trouble(&path, &start, 0.15);
@@ -116,9 +116,7 @@ mod tests {
         let flange_from_tcp = Pose::identity();
         let (path, start) = line(&arm, 0.5);
         let speed = 1e3;
-        let path = &path;
-        let trouble =
-            Trouble { kinematics: &arm, path, flange_from_tcp: &flange_from_tcp, start: &start, speed };
+        let trouble = Trouble { kinematics: &arm, path, flange_from_tcp: &flange_from_tcp, start, speed };
         assert_eq!(trouble.suggestion(), None);
     }
 }

@@ -1,5 +1,6 @@
 //! What a run was meant to do: the data that recorded samples are held against.
 
+use seamline::geometry::Vector3;
 use seamline::path::{Curve, Measure, Path};
 
 /// A joint's name and limits.
@@ -24,6 +25,8 @@ pub struct Acceptance {
     pub path_deviation: f64,
     /// Angle between the commanded orientation and the programmed one, in radians.
     pub orientation_deviation: f64,
+    /// Distance from a passed corner, as a fraction of the permitted one.
+    pub corner_error: f64,
     /// Relative error of the speed in the constant part of a weld.
     pub weld_speed_error: f64,
     /// Joint velocity and acceleration, as fractions of their limits.
@@ -38,6 +41,7 @@ impl Default for Acceptance {
         Self {
             path_deviation: 1e-6,
             orientation_deviation: 1e-6,
+            corner_error: 1.0,
             weld_speed_error: 0.01,
             joint: 1.0,
             joint_jerk: 1.01,
@@ -61,16 +65,21 @@ pub struct RunInfo {
 }
 
 /// What a segment programs.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "one value a segment, and plain data that is copied is worth more"
-)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SegmentKind {
     /// A move in joint space: MOVJ.
     Joint,
     /// A line or an arc of the tool centre point in the robot frame: MOVL, MOVC.
     Path(Path),
+    /// From one move into the next, past the point that both are taught to meet in.
+    Corner {
+        /// The way round.
+        path: Path,
+        /// The point, in the robot frame.
+        corner: Vector3,
+        /// Permitted distance from it, in metres.
+        permitted: f64,
+    },
     /// Standing still for a time.
     Dwell,
 }
@@ -86,7 +95,17 @@ impl SegmentKind {
                 Curve::Arc(_) => "MOVC",
                 Curve::Quintic(_) => "MOVS",
             },
+            Self::Corner { .. } => "corner",
             Self::Dwell => "dwell",
+        }
+    }
+
+    /// The path of the tool centre point that is run.
+    #[must_use]
+    pub fn path(&self) -> Option<&Path> {
+        match self {
+            Self::Path(path) | Self::Corner { path, .. } => Some(path),
+            Self::Joint | Self::Dwell => None,
         }
     }
 }
@@ -113,10 +132,8 @@ impl SegmentInfo {
     /// Length of the path of the tool centre point, in metres; 0 where it only turns, moves in joint space or rests.
     #[must_use]
     pub fn length(&self) -> f64 {
-        match &self.kind {
-            SegmentKind::Path(path) if path.measure() == Measure::Length => path.length(),
-            _ => 0.0,
-        }
+        let path = self.kind.path().filter(|path| path.measure() == Measure::Length);
+        path.map_or(0.0, Path::length)
     }
 }
 

@@ -191,8 +191,14 @@ impl From<&Event> for Incident {
 type Worst = Option<(f64, String)>;
 
 fn checks(run: &RunInfo, findings: &Findings, samples_lost: u64) -> Vec<Check> {
-    let Acceptance { path_deviation, orientation_deviation, weld_speed_error, joint, joint_jerk } =
-        run.acceptance;
+    let Acceptance {
+        path_deviation,
+        orientation_deviation,
+        corner_error,
+        weld_speed_error,
+        joint,
+        joint_jerk,
+    } = run.acceptance;
     let moves = |value: fn(&MoveFigures) -> Option<f64>| {
         worst(
             findings
@@ -219,6 +225,13 @@ fn checks(run: &RunInfo, findings: &Findings, samples_lost: u64) -> Vec<Check> {
             1e6,
             orientation_deviation,
             moves(|of| of.orientation_deviation_max_rad),
+        ),
+        (
+            "corner error",
+            "% of permitted",
+            1e2,
+            corner_error,
+            moves(|of| Some(of.corner_error_mm? / of.corner_permitted_mm?)),
         ),
         ("weld speed error", "%", 1e2, weld_speed_error, moves(|of| of.speed_error_max.filter(|_| of.arc))),
         ("joint position", "% of range", 1e2, 1.0, position),

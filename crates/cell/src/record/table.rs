@@ -79,7 +79,7 @@ fn write_checks(f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
 
 fn write_moves(f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
     let rows = summary.moves.iter().take(MOVES).map(|of| {
-        let um = of.path_deviation_max_mm().map(|mm| mm * 1e3);
+        let um = of.path_deviation_max_mm().or(of.corner_error_mm).map(|mm| mm * 1e3);
         let speed = match (of.speed_min_mm_s, of.speed_max_mm_s) {
             (Some(least), Some(greatest)) => format!("{} … {}", rounded(least), rounded(greatest)),
             _ => "–".to_owned(),

@@ -4,8 +4,8 @@ use super::announcement::announcement;
 use super::error::{Place, RunError};
 use super::walk::{WAIT_MAX, Walk};
 use crate::cell::{Cell, UnmetWait};
-use crate::job::{Action, JobSet, Step};
-use crate::plan::{Arm, PlanningArm};
+use crate::job::{Action, Condition, JobSet, Location, Step};
+use crate::plan::{Arm, Planned, PlanningArm};
 
 /// Longest job that is checked: a job that loops for ever is checked so far, and said to.
 const DURATION_MAX: f64 = 4.0 * 3600.0;
@@ -48,6 +48,17 @@ pub fn check<const N: usize, K: PlanningArm<N>>(
     cell: &Cell,
     arm: &Arm<N, K>,
 ) -> Result<CheckReport, RunError> {
+    let report = walk_through(jobs, cell, arm, false)?;
+    // The robot of a job that reads inputs arrives at each point before the next instruction is read.
+    if report.reads_inputs { walk_through(jobs, cell, arm, true) } else { Ok(report) }
+}
+
+fn walk_through<const N: usize, K: PlanningArm<N>>(
+    jobs: &JobSet,
+    cell: &Cell,
+    arm: &Arm<N, K>,
+    in_step: bool,
+) -> Result<CheckReport, RunError> {
     let mut walk = Walk::new(jobs, cell, arm)?;
     let mut report = CheckReport {
         findings: Vec::new(),
@@ -60,19 +71,25 @@ pub fn check<const N: usize, K: PlanningArm<N>>(
     while report.steps < STEPS_MAX && report.duration < DURATION_MAX {
         let before = walk.inputs_read();
         match walk.next(report.duration) {
-            Ok(None) => return Ok(report),
+            Ok(None) => {
+                report.finish(&mut walk);
+                return Ok(report);
+            }
             Ok(Some(step)) => {
                 report.steps += 1;
+                report.moves += usize::from(matches!(step.action, Action::Move(_)));
                 report.reads_inputs |= walk.inputs_read() > before;
-                report.take(&mut walk, &step);
+                report.take(&mut walk, &step, in_step);
             }
             Err(error) => {
                 // The program itself fails: there is no next step.
+                report.finish(&mut walk);
                 report.errors.push(error);
                 return Ok(report);
             }
         }
     }
+    report.finish(&mut walk);
     let entry = jobs.entry();
     let text = format!("the job does not end within {:.0} h; it is checked so far", report.duration / 3600.0);
     let at = Place { file: entry.file.to_string(), line: entry.line, column: 1 };
@@ -81,43 +98,77 @@ pub fn check<const N: usize, K: PlanningArm<N>>(
 }
 
 impl CheckReport {
-    fn take<const N: usize, K: PlanningArm<N>>(&mut self, walk: &mut Walk<'_, N, K>, step: &Step) {
-        if let Action::Move(_) = step.action {
-            self.moves += 1;
+    fn take<const N: usize, K: PlanningArm<N>>(
+        &mut self,
+        walk: &mut Walk<'_, N, K>,
+        step: &Step,
+        in_step: bool,
+    ) {
+        let mut parts = Vec::new();
+        if let Err(error) = walk.plan(step, &mut parts) {
+            self.add_error(error);
         }
-        if let Action::Wait { condition, timeout_seconds } = &step.action {
-            self.reads_inputs = true;
-            match waiting_time(walk, condition, *timeout_seconds, self.duration) {
-                Some(seconds) => self.duration += seconds,
-                None if walk.stops_at_unmet_wait() => {
-                    self.errors.push(RunError::UnmetWait { at: walk.place(step) });
-                }
-                None => {
-                    self.note(walk, step, "WAIT is never met by the scripted inputs: the run goes on at once")
-                }
-            }
+        self.add(walk, parts);
+        if in_step {
+            self.finish(walk);
         }
-        match walk.plan(step) {
-            Ok(planned) => {
-                self.duration += planned.duration;
-                for notice in &planned.notices {
-                    self.note(walk, step, notice);
-                }
-                if let Some(text) = announcement(&step.action) {
-                    self.note(walk, step, &text);
-                }
-            }
-            Err(error) => {
-                if !self.errors.iter().any(|known| known.to_string() == error.to_string()) {
-                    self.errors.push(error);
-                }
-                walk.skip(step);
+    }
+
+    /// What is left of the motion. Each error leaves a step out, so that this ends.
+    fn finish<const N: usize, K: PlanningArm<N>>(&mut self, walk: &mut Walk<'_, N, K>) {
+        loop {
+            let mut parts = Vec::new();
+            let result = walk.finish(&mut parts);
+            self.add(walk, parts);
+            match result {
+                Ok(()) => return,
+                Err(error) => self.add_error(error),
             }
         }
     }
 
-    fn note<const N: usize, K: PlanningArm<N>>(&mut self, walk: &Walk<'_, N, K>, step: &Step, text: &str) {
-        let finding = Finding { at: walk.place(step), text: text.to_owned() };
+    fn add<const N: usize, K: PlanningArm<N>>(&mut self, walk: &mut Walk<'_, N, K>, parts: Vec<Planned<N>>) {
+        for part in parts {
+            for notice in &part.notices {
+                self.note(walk, &part.at, notice);
+            }
+            let action = part.action.as_ref();
+            if let Some(Action::Wait { condition, timeout_seconds }) = action {
+                self.wait(walk, &part.at, condition, *timeout_seconds);
+            }
+            self.duration += part.duration;
+            if let Some(text) = action.and_then(announcement) {
+                self.note(walk, &part.at, &text);
+            }
+        }
+    }
+
+    fn wait<const N: usize, K: PlanningArm<N>>(
+        &mut self,
+        walk: &mut Walk<'_, N, K>,
+        at: &Location,
+        condition: &Condition,
+        timeout: Option<f64>,
+    ) {
+        self.reads_inputs = true;
+        match waiting_time(walk, condition, timeout, self.duration) {
+            Some(seconds) => self.duration += seconds,
+            None if walk.stops_at_unmet_wait() => {
+                self.errors.push(RunError::UnmetWait { at: walk.place(at) });
+            }
+            None => self.note(walk, at, "WAIT is never met by the scripted inputs: the run goes on at once"),
+        }
+    }
+
+    fn add_error(&mut self, error: RunError) {
+        // A line in a loop fails once.
+        if !self.errors.iter().any(|known| known.to_string() == error.to_string()) {
+            self.errors.push(error);
+        }
+    }
+
+    fn note<const N: usize, K: PlanningArm<N>>(&mut self, walk: &Walk<'_, N, K>, at: &Location, text: &str) {
+        let finding = Finding { at: walk.place(at), text: text.to_owned() };
         // A line in a loop is noted once.
         if !self.findings.contains(&finding) {
             self.findings.push(finding);
@@ -128,7 +179,7 @@ impl CheckReport {
 /// How long the program waits, by the scripted inputs; `None` where it waits in vain.
 fn waiting_time<const N: usize, K: PlanningArm<N>>(
     walk: &mut Walk<'_, N, K>,
-    condition: &crate::job::Condition,
+    condition: &Condition,
     timeout: Option<f64>,
     now: f64,
 ) -> Option<f64> {

@@ -9,8 +9,8 @@ use super::announcement::{Announcement, announcement};
 use super::error::RunError;
 use super::walk::{WAIT_MAX, Walk};
 use crate::cell::UnmetWait;
-use crate::job::{Action, Condition, Step};
-use crate::plan::PlanningArm;
+use crate::job::{Action, Condition, Location};
+use crate::plan::{Planned, PlanningArm};
 use crate::record::{EventKind, SegmentInfo};
 
 /// A WAIT under way.
@@ -18,7 +18,7 @@ use crate::record::{EventKind, SegmentInfo};
 struct Waiting {
     condition: Condition,
     timeout: Option<f64>,
-    step: Step,
+    at: Location,
     /// When the robot arrived and the waiting began.
     since: Option<f64>,
 }
@@ -97,45 +97,56 @@ impl<'a, const N: usize, K: PlanningArm<N>> Feeder<'a, N, K> {
     }
 
     fn take_step(&mut self, time: f64, segment: &mut impl FnMut(SegmentInfo)) {
-        let step = match self.walk.next(time) {
-            Ok(Some(step)) => step,
-            Ok(None) => return self.end(None),
-            Err(error) => return self.end(Some(error)),
+        let mut parts = Vec::new();
+        let (ends, result) = match self.walk.next(time) {
+            Ok(Some(step)) => (false, self.walk.plan(&step, &mut parts)),
+            Ok(None) => (true, Ok(())),
+            Err(error) => (true, Err(error)),
         };
-        let planned = match self.walk.plan(&step) {
-            Ok(planned) => planned,
-            Err(error) => return self.end(Some(error)),
+        let result = match result {
+            // In step, and at the program's end, the robot arrives.
+            Ok(()) if ends || self.in_step => self.walk.finish(&mut parts),
+            result => result,
         };
-        let reported = announcement(&step.action);
-        let kind = if matches!(step.action, Action::Output(_) | Action::Message { .. }) {
-            EventKind::Output
-        } else {
-            EventKind::Notice
-        };
-        for notice in planned.notices {
-            self.announce(&step, EventKind::Notice, Some(notice));
+        for part in parts {
+            self.send(part, segment);
         }
-        self.announce(&step, kind, reported);
-        if let Some(info) = planned.segment {
+        if (ends || result.is_err()) && !self.ended {
+            self.end(result.err());
+        }
+    }
+
+    /// Puts what a step became into the queue, and what it says to the operator beside it.
+    fn send(&mut self, part: Planned<N>, segment: &mut impl FnMut(SegmentInfo)) {
+        let Planned { at, action, commands, segment: info, notices, .. } = part;
+        for notice in notices {
+            self.announce(at.line, EventKind::Notice, Some(notice));
+        }
+        if let Some(action) = &action {
+            let outputs = matches!(action, Action::Output(_) | Action::Message { .. });
+            let kind = if outputs { EventKind::Output } else { EventKind::Notice };
+            self.announce(at.line, kind, announcement(action));
+        }
+        if let Some(info) = info {
             segment(info);
         }
-        self.backlog.extend(planned.commands);
-        match step.action.clone() {
-            Action::Wait { condition, timeout_seconds } => {
-                self.announce(&step, EventKind::Notice, None);
-                self.waiting = Some(Waiting { condition, timeout: timeout_seconds, step, since: None });
+        self.backlog.extend(commands);
+        match action {
+            Some(Action::Wait { condition, timeout_seconds }) => {
+                self.announce(at.line, EventKind::Notice, None);
+                self.waiting = Some(Waiting { condition, timeout: timeout_seconds, at, since: None });
             }
-            Action::Alarm { stops: true, .. } | Action::End => self.end(None),
-            _ => self.announce(&step, EventKind::Notice, None),
+            Some(Action::Alarm { stops: true, .. } | Action::End) => self.end(None),
+            _ => self.announce(at.line, EventKind::Notice, None),
         }
     }
 
     /// Sends a marker, with a text where there is something to say when it is passed.
-    fn announce(&mut self, step: &Step, kind: EventKind, text: Option<String>) {
+    fn announce(&mut self, line: u32, kind: EventKind, text: Option<String>) {
         self.marker += 1;
         self.backlog.push_back(Command::Marker(self.marker));
         if let Some(text) = text {
-            let (marker, line) = (self.marker, step.at.line);
+            let marker = self.marker;
             self.announcements.push_back(Announcement { marker, line, kind, text });
         }
     }
@@ -160,15 +171,15 @@ impl<'a, const N: usize, K: PlanningArm<N>> Feeder<'a, N, K> {
         {
             return false;
         }
-        let step = waiting.step.clone();
+        let at = waiting.at.clone();
         if self.walk.cell().io.unmet_wait == UnmetWait::Stop {
             self.waiting = None;
-            let at = self.walk.place(&step);
+            let at = self.walk.place(&at);
             self.end(Some(RunError::UnmetWait { at }));
             return false;
         }
         self.announce(
-            &step,
+            at.line,
             EventKind::Notice,
             Some("WAIT is never met by the scripted inputs: goes on".into()),
         );

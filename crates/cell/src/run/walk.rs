@@ -3,7 +3,7 @@
 use super::error::{Place, RunError};
 use super::world::CellWorld;
 use crate::cell::{Cell, SpeedUnit};
-use crate::job::{Condition, Interpreter, JobSet, LinearSpeedUnit, SignalKind, Step, World};
+use crate::job::{Condition, Interpreter, JobSet, LinearSpeedUnit, Location, SignalKind, Step, World};
 use crate::plan::{Arm, PlanError, Planned, Planner, PlanningArm};
 
 /// How long a WAIT without limit is tried, in seconds.
@@ -41,21 +41,23 @@ impl<'a, const N: usize, K: PlanningArm<N>> Walk<'a, N, K> {
         self.world.joints = *self.planner.joints();
         let step = self.interpreter.next(&mut self.world)?;
         match (self.world.refused.take(), &step) {
-            (Some(number), Some(step)) => Err(RunError::UnscriptedInput { at: self.place(step), number }),
+            (Some(number), Some(step)) => Err(RunError::UnscriptedInput { at: self.place(&step.at), number }),
             _ => Ok(step),
         }
     }
 
-    /// What the step becomes; the planner stays where it was where that fails.
-    pub(super) fn plan(&mut self, step: &Step) -> Result<Planned<N>, RunError> {
-        self.planner
-            .plan(step)
-            .map_err(|PlanError { problem, .. }| RunError::Plan { at: self.place(step), problem })
+    /// Takes a step; hands out what is settled of the motion by now.
+    pub(super) fn plan(&mut self, step: &Step, out: &mut Vec<Planned<N>>) -> Result<(), RunError> {
+        self.planner.take(step, out).map_err(|error| self.plan_error(error))
     }
 
-    /// Goes on from the step's target as if it had been reached.
-    pub(super) fn skip(&mut self, step: &Step) {
-        self.planner.skip(step);
+    /// Hands out what is left of the motion.
+    pub(super) fn finish(&mut self, out: &mut Vec<Planned<N>>) -> Result<(), RunError> {
+        self.planner.finish(out).map_err(|error| self.plan_error(error))
+    }
+
+    fn plan_error(&self, PlanError { at, problem }: PlanError) -> RunError {
+        RunError::Plan { at: self.place(&at), problem }
     }
 
     /// Whether a condition on the cell's signals holds at `time`.
@@ -81,13 +83,13 @@ impl<'a, const N: usize, K: PlanningArm<N>> Walk<'a, N, K> {
         self.world.inputs_read
     }
 
-    /// Where a step's instruction stands.
-    pub(super) fn place(&self, step: &Step) -> Place {
-        let job = self.jobs.jobs().find(|job| job.name == step.at.job);
-        let statement = job.and_then(|job| job.program.iter().find(|s| s.line == step.at.line));
+    /// Where an instruction stands.
+    pub(super) fn place(&self, at: &Location) -> Place {
+        let job = self.jobs.jobs().find(|job| job.name == at.job);
+        let statement = job.and_then(|job| job.program.iter().find(|s| s.line == at.line));
         Place {
-            file: job.map_or_else(|| step.at.job.to_string(), |job| job.file.to_string()),
-            line: step.at.line,
+            file: job.map_or_else(|| at.job.to_string(), |job| job.file.to_string()),
+            line: at.line,
             column: statement.map_or(1, |statement| statement.column),
         }
     }

@@ -18,7 +18,7 @@ pub(super) struct CellWorld<'a, const N: usize, K> {
     pub(super) time: f64,
     /// Where the arm is when all steps so far are done.
     pub(super) joints: [f64; N],
-    /// Inputs read so far: a job that reads none may be planned ahead.
+    /// Inputs and positions read so far: a job that reads none may be planned ahead.
     pub(super) inputs_read: u64,
     /// An input that the cell refuses to be read.
     pub(super) refused: Option<u32>,
@@ -85,6 +85,7 @@ impl<const N: usize, K: PlanningArm<N>> World for CellWorld<'_, N, K> {
     }
 
     fn current_position(&mut self) -> Option<JobPosition> {
+        self.inputs_read += 1;
         let pulses = pulses_from_joints(&self.joints, &self.arm.pulses_per_degree);
         Some(JobPosition { coordinates: Coordinates::Pulses(pulses), tool: 0 })
     }

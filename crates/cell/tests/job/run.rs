@@ -285,8 +285,7 @@ IMOV P002 V=10.0 PL=0";
     assert_eq!((all[0].1.acceleration, all[0].1.deceleration, all[1].1.acceleration), (0.5, 0.2, 1.0));
     let zones: Vec<Zone> = all.iter().take(4).map(|(_, m, _)| m.zone).collect();
     assert_eq!(zones, [Zone::Exact, Zone::Unspecified, Zone::Level(3), Zone::CornerRadius { mm: 2.5 }]);
-    assert_eq!(all[2].2[0].to_string(), "the robot stops exactly on this point (PL=3)");
-    assert_eq!(all[3].2[1], Note::TagWithoutEffect("NWAIT"));
+    assert_eq!(all[3].2, [Note::TagWithoutEffect("NWAIT")]);
     assert!(all[3].1.no_wait);
     assert_eq!(all[4].1.target.name, PositionName { local: false, kind: PositionKind::P, number: 2 });
     assert!(matches!(all[4].1.target.position.coordinates, Coordinates::Pulses(_)));
@@ -294,6 +293,50 @@ IMOV P002 V=10.0 PL=0";
     assert_eq!(*paths[5], MovePath::Incremental { frame: Some(Frame::User(2)) });
     assert_eq!(*paths[6], MovePath::Incremental { frame: Some(Frame::Robot) });
     assert_eq!(*paths[7], MovePath::Incremental { frame: None });
+}
+
+/// The points of MOVS are held back until their run ends; what stands between them stays between them.
+#[test]
+fn splines_run_through_all_points_of_their_run() {
+    let program = "MOVL C00001 V=10.0
+MOVS C00002 V=20.0
+DOUT OT#(1) ON
+MOVS C00003 V=20.0
+MOVS C00004 V=30.0
+MOVL C00005 V=10.0
+MOVS C00001 V=10.0
+MOVS C00002 V=10.0";
+    let (taken, error) = steps(vec![file(program)], &mut TestWorld::default(), 100);
+    assert_eq!(error, None);
+    let short = |step: &Step| match &step.action {
+        Action::Move(m) => match &m.path {
+            MovePath::Linear if step.notes == [Note::SplineTooShort] => format!("short {}", m.target.name),
+            MovePath::Linear => format!("line {}", m.target.name),
+            MovePath::Spline(piece) => {
+                let points: Vec<_> = piece.points.iter().map(|point| point.name.number.to_string()).collect();
+                assert_eq!(piece.points[piece.end], m.target);
+                format!("spline {} to {}", points.join("-"), piece.end)
+            }
+            other => format!("{other:?}"),
+        },
+        Action::Output(_) => "output".into(),
+        _ => "end".into(),
+    };
+    let seen: Vec<String> = taken.iter().map(short).collect();
+    assert_eq!(
+        seen,
+        [
+            "line C00001",
+            "line C00002",
+            "output",
+            "spline 2-3-4 to 1",
+            "spline 2-3-4 to 2",
+            "line C00005",
+            "short C00001",
+            "short C00002",
+            "end"
+        ]
+    );
 }
 
 /// Moves in short: `L5` straight to C5, `J5` joint, `W1-2-3` a whole arc, `F` its first half, `S` its second.
@@ -420,7 +463,6 @@ fn what_is_not_executed_is_reported_or_refused_with_its_line() {
     let program = "REFP 1
 WVON WEV#(1)
 MVOL C00001 V=1.0
-MOVS C00001 V=10.0
 WVOF";
     let (taken, error) = steps(vec![file(program)], &mut TestWorld::default(), 100);
     assert_eq!(error, None);
@@ -436,9 +478,8 @@ WVOF";
             "TEST line 33 REFP 1: reference points matter to weaves only",
             "TEST line 34 WVON WEV#(1)! weaving is not built",
             "TEST line 35 MVOL C00001 V=1.0! this instruction is not known; did you mean `MOVL`?",
-            "TEST line 36 MOVS C00001 V=10.0! splines are not built",
-            "TEST line 37 WVOF: no weave is on",
-            "TEST line 38 End",
+            "TEST line 36 WVOF: no weave is on",
+            "TEST line 37 End",
         ]
     );
 }

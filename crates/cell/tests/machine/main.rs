@@ -9,6 +9,7 @@
 )]
 
 mod bench;
+mod chain;
 mod cycle;
 mod faults;
 mod no_alloc;

@@ -2,7 +2,7 @@
 
 use seamline::geometry::Vector3;
 use seamline::path::Curve;
-use seamline_cell::record::{JointInfo, JointTraces, PlotData, RunInfo, SegmentInfo, SegmentKind, Summary};
+use seamline_cell::record::{JointInfo, JointTraces, PlotData, RunInfo, SegmentInfo, Summary};
 use serde::Serialize;
 
 /// Points in which an arc is drawn.
@@ -133,7 +133,7 @@ fn joint(summary: &Summary, index: usize, info: &JointInfo, traces: &JointTraces
 }
 
 fn programmed(segment: &SegmentInfo) -> Option<Programmed> {
-    let SegmentKind::Path(path) = &segment.kind else { return None };
+    let path = segment.kind.path()?;
     let steps = match path.curve() {
         Curve::Line { .. } => 1,
         Curve::Arc(_) | Curve::Quintic(_) => ARC_POINTS,

@@ -111,7 +111,7 @@ pub(super) fn moves(summary: &Summary) -> String {
             cell(of.speed_programmed_mm_s),
             cell(of.speed_min_mm_s),
             cell(of.speed_max_mm_s),
-            cell(of.path_deviation_max_mm().map(|mm| mm * 1e3)),
+            cell(of.path_deviation_max_mm().or(of.corner_error_mm).map(|mm| mm * 1e3)),
             cell(of.orientation_deviation_max_rad.map(|rad| rad * 1e6)),
             "</tr>".to_owned(),
         ]
@@ -119,8 +119,8 @@ pub(super) fn moves(summary: &Summary) -> String {
     };
     format!(
         "<section id=\"moves\"><h2>Moves</h2><p class=\"hint\">Click a row to see it in the plots. \
-        Deviations are the greatest from the programmed line or arc, and from the programmed orientation; speeds are \
-        the least and greatest in the constant part.</p>\
+        Deviations are the greatest from the programmed line or arc, and from the programmed orientation; of a corner, how \
+        near it was passed. Speeds are the least and greatest in the constant part.</p>\
         <div class=\"panel scroll\"><table><thead><tr><th class=\"number\">line</th><th>move</th><th>arc</th>\
         <th class=\"number\">start s</th><th class=\"number\">time s</th><th class=\"number\">length mm</th>\
         <th class=\"number\">programmed mm/s</th><th class=\"number\">least mm/s</th>\

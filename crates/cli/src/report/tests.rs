@@ -82,7 +82,9 @@ struct Move {
 impl Move {
     fn pose(&self, time: f64) -> Pose {
         match &self.info.kind {
-            SegmentKind::Path(path) => path.pose(travelled(time, path.length(), self.speed)),
+            SegmentKind::Path(path) | SegmentKind::Corner { path, .. } => {
+                path.pose(travelled(time, path.length(), self.speed))
+            }
             SegmentKind::Joint => {
                 let (from, to) = (joints_of(&self.from), joints_of(&self.to));
                 let share = travelled(time, 1.0, self.speed);

@@ -9,7 +9,7 @@ use crate::path::PathState;
 use crate::safety::Fault;
 
 /// Commands held between the queue and the motion.
-const PENDING: usize = 8;
+const PENDING: usize = 32;
 /// Samples by which the look-ahead may grow in one cycle; one is used up.
 const SAMPLES_PER_CYCLE: usize = 3;
 
@@ -132,10 +132,10 @@ impl<const N: usize> Program<N> {
                 self.position = joints_on(block, block.duration(), &self.position, kinematics)?.position;
                 self.move_start = end;
                 self.pop(goal);
-                if self.head_move().is_none() {
+                if !self.moves_on() {
                     // Nothing to spend the rest of the period on.
                     self.now = end;
-                    if self.count == 0 && !rests {
+                    if !rests {
                         return Err(Fault::Starved);
                     }
                 }
@@ -187,6 +187,13 @@ impl<const N: usize> Program<N> {
             Some(Command::Move(block)) => Some(block),
             _ => None,
         }
+    }
+
+    /// The next command that takes time is a move.
+    fn moves_on(&self) -> bool {
+        let at_once = |command: &&Command<N>| matches!(command, Command::Marker(_) | Command::Arc { .. });
+        let next = (0..self.count).map(|k| self.nth(k)).find(|command| !at_once(command));
+        matches!(next, Some(Command::Move(_)))
     }
 
     fn nth(&self, k: usize) -> &Command<N> {

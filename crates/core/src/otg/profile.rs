@@ -251,6 +251,12 @@ impl Profile {
         self.end
     }
 
+    /// The motion at a time from which on the target has been reached.
+    #[inline]
+    pub(super) fn after_end(&self, time: f64) -> Phase {
+        self.end.at(larger(time - self.duration, 0.0))
+    }
+
     /// Position, velocity, acceleration and jerk at a time; before the start those of the start, after the end those
     /// of the target going on at its acceleration. (`duration` is what is left of the phase.)
     #[inline]

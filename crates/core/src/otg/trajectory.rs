@@ -81,7 +81,8 @@ impl<const N: usize> Trajectory<N> {
         let zero = [0.0; N];
         let mut sample = Sample { position: zero, velocity: zero, acceleration: zero, jerk: zero };
         for (axis, profile) in self.profiles.iter().enumerate() {
-            let now = profile.at(time);
+            // At the duration it is the target's exactly, however the durations of the phases add up.
+            let now = if time >= self.duration { profile.after_end(time) } else { profile.at(time) };
             sample.position[axis] = now.position;
             sample.velocity[axis] = now.velocity;
             sample.acceleration[axis] = now.acceleration;

@@ -7,19 +7,10 @@
 use std::collections::VecDeque;
 
 use super::super::step::{Action, ArcPart, CircularArc, Move, MovePath, Note, Step, Target};
+use super::curves::Point;
 
 /// Steps that may stand between the via point and the end of an arc.
 const MAX_BETWEEN: usize = 64;
-
-/// A step on its way out of the interpreter.
-#[derive(Debug)]
-pub(super) struct Raw {
-    pub(super) step: Step,
-    /// The move is a MOVC.
-    pub(super) circular: bool,
-    /// The move has `FPT`.
-    pub(super) fixed_point: bool,
-}
 
 /// The run of MOVC points under way.
 #[derive(Debug, Default)]
@@ -38,25 +29,29 @@ impl Arcs {
     }
 
     /// Takes a step in.
-    pub(super) fn push(&mut self, raw: Raw) {
-        let Raw { step, circular, fixed_point } = raw;
+    pub(super) fn push(&mut self, step: Step, point: Point) {
         let target = match &step.action {
             Action::Move(motion) => Some(motion.target.clone()),
             _ => None,
         };
-        match target {
-            Some(target) if circular => self.point(step, target, fixed_point),
-            None if !self.held.is_empty() && self.held.len() <= MAX_BETWEEN => self.held.push_back(step),
-            Some(_) => {
-                self.flush();
-                self.run.clear();
+        match (target, point) {
+            (Some(target), Point::Circular { fixed }) => self.point(step, target, fixed),
+            (None, _) if !self.held.is_empty() && self.held.len() <= MAX_BETWEEN => self.held.push_back(step),
+            (Some(_), _) => {
+                self.end_run();
                 self.ready.push_back(step);
             }
-            None => {
+            (None, _) => {
                 self.flush();
                 self.ready.push_back(step);
             }
         }
+    }
+
+    /// A point that is none of MOVC follows.
+    pub(super) fn end_run(&mut self) {
+        self.flush();
+        self.run.clear();
     }
 
     /// Nothing more will come to complete an arc: a via point that waits is reached straight.

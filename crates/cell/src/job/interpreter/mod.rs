@@ -1,6 +1,7 @@
 //! The program, one step at a time.
 
 mod arcs;
+mod curves;
 mod data;
 mod evaluate;
 mod flow;
@@ -8,11 +9,12 @@ mod moves;
 mod outputs;
 mod process;
 mod speed;
+mod splines;
 mod variables;
 
 use std::sync::Arc;
 
-use self::arcs::{Arcs, Raw};
+use self::curves::{Curves, Point, Raw};
 use self::outputs::Outputs;
 use self::speed::Speeds;
 use self::variables::{Value, Variables};
@@ -36,7 +38,7 @@ pub const MAX_CALLS: usize = 32;
 /// Walks a set of jobs from the entry job's first line, and yields what is to be done.
 ///
 /// Pull style: it has no clock and no thread, and does nothing between two calls of [`next`](Self::next). A program
-/// is read ahead of the robot only where an arc needs its third point.
+/// is read ahead of the robot only where an arc needs its third point, or a spline all of its points.
 #[derive(Debug)]
 pub struct Interpreter {
     jobs: JobSet,
@@ -49,7 +51,7 @@ pub struct Interpreter {
     arc: Option<ArcCondition>,
     /// `$RV`.
     returned: Option<Value>,
-    arcs: Arcs,
+    curves: Curves,
     /// Instructions since the last step that takes time.
     idle: u32,
 }
@@ -77,8 +79,8 @@ enum Outcome {
     Nothing,
     /// Something to be done, with remarks.
     Do(Action, Vec<Note>),
-    /// A point of MOVC; `FPT` or not.
-    Circular(Action, Vec<Note>, bool),
+    /// A point of a path that later points decide.
+    Point(Action, Vec<Note>, Point),
 }
 
 impl From<Action> for Outcome {
@@ -114,7 +116,7 @@ impl Interpreter {
             speeds: Speeds::default(),
             arc: None,
             returned: None,
-            arcs: Arcs::default(),
+            curves: Curves::default(),
             idle: 0,
         }
     }
@@ -128,15 +130,15 @@ impl Interpreter {
     /// missing speed, calls nested too deeply, a loop in which nothing takes time. The interpreter ends then.
     pub fn next(&mut self, world: &mut impl World) -> Result<Option<Step>, JobError> {
         loop {
-            if let Some(step) = self.arcs.pop() {
+            if let Some(step) = self.curves.pop() {
                 return Ok(Some(step));
             }
             // Ends: `run_one` counts instructions, and gives an error where their bound is passed.
             match self.run_one(world) {
-                Ok(Some(raw)) => self.arcs.push(raw),
+                Ok(Some(raw)) => self.curves.push(raw),
                 Ok(None) if self.calls.is_empty() => {
-                    self.arcs.flush();
-                    return Ok(self.arcs.pop());
+                    self.curves.flush();
+                    return Ok(self.curves.pop());
                 }
                 Ok(None) => {}
                 Err(error) => {
@@ -173,16 +175,16 @@ impl Interpreter {
                 self.execute(&job, index, statement, world).map_err(fail)?
             }
         };
-        let (action, notes, circular, fixed_point) = match outcome {
+        let (action, notes, point) = match outcome {
             Outcome::Nothing => return Ok(None),
-            Outcome::Do(action, notes) => (action, notes, false, false),
-            Outcome::Circular(action, notes, fixed_point) => (action, notes, true, fixed_point),
+            Outcome::Do(action, notes) => (action, notes, Point::Single),
+            Outcome::Point(action, notes, point) => (action, notes, point),
         };
         if takes_time(&action, world) {
             self.idle = 0;
         }
         let at = location(&job, statement);
-        Ok(Some(Raw { step: Step { at, action, notes }, circular, fixed_point }))
+        Ok(Some(Raw { step: Step { at, action, notes }, point }))
     }
 
     fn execute(
@@ -198,10 +200,12 @@ impl Interpreter {
             }
             Instruction::Move(step) => {
                 let (action, notes) = self.motion(job, index, statement, step, world)?;
-                Ok(if step.interpolation == Interpolation::Circular {
-                    Outcome::Circular(action, notes, step.fixed_point)
-                } else {
-                    Outcome::Do(action, notes)
+                Ok(match step.interpolation {
+                    Interpolation::Circular => {
+                        Outcome::Point(action, notes, Point::Circular { fixed: step.fixed_point })
+                    }
+                    Interpolation::Spline => Outcome::Point(action, notes, Point::Spline),
+                    _ => Outcome::Do(action, notes),
                 })
             }
             Instruction::Speed(tags) => {

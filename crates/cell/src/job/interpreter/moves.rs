@@ -26,13 +26,8 @@ impl Interpreter {
         let target = self.target(job, statement.column, step, world)?;
         let (speed, speed_origin) = self.speed(step, at, statement.column, &mut notes, world)?;
         let zone = self.zone(step, world)?;
-        if zone != Zone::Exact {
-            notes.push(Note::StopsInZone(zone));
-        }
-        for (present, tag) in [(step.no_wait, "NWAIT"), (step.continuous, "CONT")] {
-            if present {
-                notes.push(Note::TagWithoutEffect(tag));
-            }
+        if step.no_wait {
+            notes.push(Note::TagWithoutEffect("NWAIT"));
         }
         let circular = step.interpolation == Interpolation::Circular;
         if circular && !has_neighbour(job, index) {
@@ -40,9 +35,8 @@ impl Interpreter {
         }
         let path = match step.interpolation {
             Interpolation::Joint => MovePath::Joint,
-            // MOVC points become arcs when their neighbours are known.
-            Interpolation::Linear | Interpolation::Circular => MovePath::Linear,
-            Interpolation::Spline => MovePath::Spline,
+            // MOVC and MOVS points become arcs and splines when their neighbours are known.
+            Interpolation::Linear | Interpolation::Circular | Interpolation::Spline => MovePath::Linear,
             Interpolation::Incremental => self.increment(step, &target, world)?,
         };
         let acceleration = self.share(step.acceleration.as_ref(), "ACC (%)", world)?;

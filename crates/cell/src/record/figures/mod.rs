@@ -1,5 +1,6 @@
 //! Figures of a run, taken from its samples as they come.
 
+mod corner;
 mod deviation;
 mod joints;
 mod moves;

@@ -7,6 +7,7 @@ use seamline::geometry::Vector3;
 use seamline::path::{Curve, Measure};
 use serde::Serialize;
 
+use super::corner::CornerWatch;
 use super::deviation::{Deviation, Programmed};
 use super::joints::follows;
 use crate::record::info::{SegmentInfo, SegmentKind};
@@ -19,7 +20,7 @@ pub struct MoveFigures {
     pub segment: u32,
     /// Line of the job file.
     pub line: u32,
-    /// `MOVJ`, `MOVL`, `MOVC` or `dwell`.
+    /// `MOVJ`, `MOVL`, `MOVC`, `MOVS`, `corner` or `dwell`.
     pub kind: &'static str,
     /// The arc is lit.
     pub arc: bool,
@@ -33,10 +34,10 @@ pub struct MoveFigures {
     /// Programmed speed of the tool centre point.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_programmed_mm_s: Option<f64>,
-    /// Least speed in the constant part while the override is steady.
+    /// Least speed in the constant part (in a corner: anywhere) while the override is steady.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_min_mm_s: Option<f64>,
-    /// Greatest speed in the constant part while the override is steady.
+    /// Greatest speed in the constant part (in a corner: anywhere) while the override is steady.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_max_mm_s: Option<f64>,
     /// Greatest distance of the speed in the constant part from the programmed speed times the override, as a fraction
@@ -52,6 +53,12 @@ pub struct MoveFigures {
     /// Greatest angle from the programmed orientation, which follows the geodesic.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub orientation_deviation_max_rad: Option<f64>,
+    /// Least distance from a corner that is passed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub corner_error_mm: Option<f64>,
+    /// Permitted distance from it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub corner_permitted_mm: Option<f64>,
 }
 
 impl MoveFigures {
@@ -97,6 +104,7 @@ pub(super) struct Moment {
 struct Current {
     info: SegmentInfo,
     programmed: Option<Programmed>,
+    corner: Option<CornerWatch>,
     start: f64,
     end: f64,
     distance: f64,
@@ -108,14 +116,24 @@ struct Current {
     last_s: f64,
 }
 
+/// While the override changes, and in a pause, the speed is neither the job's nor a mistake.
+fn is_steady(sample: &Sample, before: Option<Before>) -> bool {
+    sample.override_rate > 0.0 && before.is_some_and(|before| before.override_rate == sample.override_rate)
+}
+
 impl MoveWatch {
     pub(super) fn new(period: f64) -> Self {
         Self { period, ahead: VecDeque::new(), current: None, last: None, done: Vec::new() }
     }
 
-    /// Announces a segment before its first sample.
+    /// Announces a segment before its first sample. More that has become known of it takes the place of what was said before.
     pub(super) fn announce(&mut self, info: SegmentInfo) {
-        self.ahead.push_back(info);
+        let current = self.current.as_mut().map(|current| &mut current.info);
+        let known = current.into_iter().chain(&mut self.ahead).find(|known| known.segment == info.segment);
+        match known {
+            Some(known) => *known = info,
+            None => self.ahead.push_back(info),
+        }
     }
 
     pub(super) fn push(&mut self, sample: &Sample) -> Moment {
@@ -166,9 +184,14 @@ impl Current {
             SegmentKind::Path(path) => Some(Programmed::new(path)),
             _ => None,
         };
+        let corner = match &info.kind {
+            SegmentKind::Corner { corner, .. } => Some(CornerWatch::new(*corner)),
+            _ => None,
+        };
         Self {
             info,
             programmed,
+            corner,
             start: time,
             end: time,
             distance: 0.0,
@@ -182,6 +205,12 @@ impl Current {
     /// Takes a sample of this segment; returns its distance from the path.
     fn push(&mut self, sample: &Sample, before: Option<Before>, speed: f64) -> f64 {
         self.end = sample.time;
+        if let Some(corner) = &mut self.corner {
+            corner.push(sample.tcp.translation.vector);
+            if before.is_some_and(|before| before.segment == sample.segment) && is_steady(sample, before) {
+                self.note_speed(speed);
+            }
+        }
         let Some(programmed) = &self.programmed else { return f64::NAN };
         let Deviation { s, distance, angle } = programmed.deviation(&sample.tcp);
         self.distance = self.distance.max(distance);
@@ -195,13 +224,16 @@ impl Current {
         {
             let expected = speed_programmed * 0.5 * (before.override_rate + sample.override_rate);
             self.speed_error = self.speed_error.max((speed - expected).abs() / speed_programmed);
-            // While the override changes, and in a pause, the speed is neither the job's nor a mistake.
-            if before.override_rate == sample.override_rate && sample.override_rate > 0.0 {
-                let [least, greatest] = self.speed.unwrap_or([speed, speed]);
-                self.speed = Some([least.min(speed), greatest.max(speed)]);
+            if is_steady(sample, Some(before)) {
+                self.note_speed(speed);
             }
         }
         distance
+    }
+
+    fn note_speed(&mut self, speed: f64) {
+        let [least, greatest] = self.speed.unwrap_or([speed, speed]);
+        self.speed = Some([least.min(speed), greatest.max(speed)]);
     }
 
     fn figures(&self) -> MoveFigures {
@@ -210,7 +242,11 @@ impl Current {
             SegmentKind::Path(path) => Some(path),
             _ => None,
         };
-        let travels = path.is_some_and(|path| path.measure() == Measure::Length);
+        let permitted = match &info.kind {
+            SegmentKind::Corner { permitted, .. } => Some(*permitted),
+            _ => None,
+        };
+        let travels = info.kind.path().is_some_and(|path| path.measure() == Measure::Length);
         let is_arc = path.is_some_and(|path| matches!(path.curve(), Curve::Arc(_)));
         let mm = |metres: f64| metres * 1e3;
         MoveFigures {
@@ -220,14 +256,16 @@ impl Current {
             arc: info.arc,
             start_s: self.start,
             end_s: self.end,
-            length_mm: path.map(|_| mm(info.length())),
+            length_mm: info.kind.path().map(|_| mm(info.length())),
             speed_programmed_mm_s: info.speed.filter(|_| travels).map(mm),
             speed_min_mm_s: self.speed.map(|[least, _]| mm(least)),
             speed_max_mm_s: self.speed.map(|[_, greatest]| mm(greatest)),
-            speed_error_max: self.speed.map(|_| self.speed_error),
+            speed_error_max: self.speed.filter(|_| path.is_some()).map(|_| self.speed_error),
             straightness_max_mm: path.filter(|_| !is_arc).map(|_| mm(self.distance)),
             arc_deviation_max_mm: path.filter(|_| is_arc).map(|_| mm(self.distance)),
             orientation_deviation_max_rad: path.map(|_| self.angle),
+            corner_error_mm: self.corner.as_ref().and_then(CornerWatch::distance).map(mm),
+            corner_permitted_mm: permitted.map(mm),
         }
     }
 }

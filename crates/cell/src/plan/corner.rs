@@ -1,0 +1,52 @@
+//! How one move runs on into the next.
+
+use seamline::path::Path;
+use seamline::path::corner::{Blend, Corner, CornerZone, MustStop};
+
+use super::run::Stops;
+use super::timing::PathLimits;
+
+/// A zone reaches from its point as far as the faster move goes in this time, in seconds, but within these multiples of the permitted
+/// error. So a slight bend between two long moves is rounded near the point only, and gently at speed.
+const REACH_TIME: f64 = 0.1;
+const REACH: [f64; 2] = [5.0, 20.0];
+/// Share of a move that its zones at either end may take.
+pub(super) const SHARE: f64 = 0.45;
+
+/// How a move passes into the next, at most `error` metres from the point between: nothing where they may run on as they are, otherwise
+/// a blend. `paths` are what is left of the two moves, `lengths` those of the whole moves, `speed` the faster one's.
+///
+/// # Errors
+/// Why the robot must stop between.
+pub(super) fn passing(
+    [before, after]: [&Path; 2],
+    lengths: [f64; 2],
+    speed: f64,
+    error: f64,
+) -> Result<Option<Blend>, Stops> {
+    let [least, most] = REACH.map(|times| times * error);
+    let reach = (REACH_TIME * speed).clamp(least, most);
+    let [first, second] = lengths.map(|length| (SHARE * length).min(reach));
+    let zone = CornerZone { position: error, orientation: None, room: [first.min(before.length()), second] };
+    match Corner::between(before, after, &zone) {
+        Corner::Smooth => Ok(None),
+        Corner::Blend(blend) => Ok(Some(blend)),
+        Corner::Stop(reason) => Err(Stops(match reason {
+            MustStop::Apart => "the next move begins elsewhere",
+            MustStop::OnTheSpot => "the next move turns on the spot",
+            MustStop::Reversal => "the path turns back",
+            MustStop::NothingPermitted => "the cell permits no corner error here",
+        })),
+    }
+}
+
+/// The gentler limits of both neighbours, and no more acceleration across the path than along it.
+pub(super) fn limits(blend: &Blend, before: &PathLimits, after: &PathLimits) -> PathLimits {
+    let acceleration = before.acceleration.min(after.acceleration);
+    let across = (acceleration / blend.greatest_curvature).sqrt();
+    PathLimits {
+        speed: before.speed.min(after.speed).min(across),
+        acceleration,
+        jerk: before.jerk.min(after.jerk),
+    }
+}

@@ -1,0 +1,213 @@
+//! From the run to blocks: followed, timed, and handed out as far as it is settled.
+
+use seamline::control::{BLOCK_PIECES, Block, Command, Motion, PathMotion};
+use seamline::kinematics::InverseError;
+use seamline::path::TimingPiece;
+
+use super::arm::PlanningArm;
+use super::cut;
+use super::error::{PlanError, Problem, Reach};
+use super::joint_path::{FollowError, PathJoints};
+use super::planner::{Planned, Planner};
+use super::remark::{Remarks, path_problem};
+use super::route::Route;
+use super::run::{Link, Piece, Sight, Stops};
+use super::suggest::Trouble;
+use super::timing::{Course, JointPath as _, Timing, TimingError, TimingLimits, time_path};
+use crate::job::{Action, Step};
+use crate::record::SegmentKind;
+
+/// A look ahead that settles nothing is repeated with one this many times as far.
+const WIDER: f64 = 2.0;
+/// A joint that ends this far from where it was taught stands in another turn or configuration; radians. Where the point is passed in
+/// a corner, the joint may be a little off anyway.
+const SAME_JOINT: f64 = 0.02;
+const SAME_JOINT_PASSING: f64 = 0.5;
+
+/// What of a path of the run is handed out.
+#[derive(Debug, Clone, Copy)]
+struct Part<'a, const N: usize> {
+    timing: &'a [TimingPiece],
+    /// All that is left of it.
+    whole: bool,
+    /// The robot is at rest afterwards.
+    rests: bool,
+    /// Where the joints are afterwards.
+    joints: [f64; N],
+}
+
+/// Where the paths of a route end, up to a place.
+fn ends_up_to(route: &Route, end: f64) -> Vec<f64> {
+    let count = route.ends().partition_point(|place| *place < end);
+    route.ends()[..count].iter().copied().chain([end]).collect()
+}
+
+impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
+    /// Hands out the whole run; `stop` says why it ends where the job does not ask for it.
+    pub(super) fn end_run(
+        &mut self,
+        stop: Option<Stops>,
+        out: &mut Vec<Planned<N>>,
+    ) -> Result<(), PlanError> {
+        let passed = self.run.last().filter(|link| link.pass.is_some()).map(|link| link.step.clone());
+        self.advance(true, out)?;
+        if let (Some(Stops(why)), Some(Step { at, action: Action::Move(r#move), .. })) = (stop, passed) {
+            let text = format!("the robot stops exactly on this point ({}): {why}", r#move.zone);
+            out.push(Planned { notices: vec![text], ..Planned::part(&at) });
+        }
+        Ok(())
+    }
+
+    /// Hands out what is settled of the run: all of it where it is closed.
+    pub(super) fn advance(&mut self, closed: bool, out: &mut Vec<Planned<N>>) -> Result<(), PlanError> {
+        let mut factor = 1.0;
+        while let Some(sight) = self.run.sight(closed, factor) {
+            let settled = self.hand_out(&sight, out)?;
+            factor = if settled { 1.0 } else { factor * WIDER };
+        }
+        Ok(())
+    }
+
+    /// Times the run as far as it is in sight, and hands out what is settled; false where that is nothing.
+    fn hand_out(&mut self, sight: &Sight, out: &mut Vec<Planned<N>>) -> Result<bool, PlanError> {
+        let (route, stretches) = self.run.route(sight.to);
+        let (arm, tool, start) = (self.arm, self.tool.flange_from_tcp, self.joints);
+        let mut joints = match PathJoints::follow(&arm.kinematics, route.clone(), &tool, &start) {
+            Ok(joints) => joints,
+            Err((s, error)) => return Err(self.fault(&route, s, &self.follow_reason(&error))),
+        };
+        let course = Course { stretches: &stretches, start: self.run.speed, open: sight.open };
+        let timing = match time_path(&mut joints, &self.timing_limits(), &course) {
+            Ok(timing) => timing,
+            Err(error) => return Err(self.timing_fault(&route, &error)),
+        };
+        let settled = &timing.pieces()[..timing.settled()];
+        let Some(last) = settled.last().map(TimingPiece::end) else { return Ok(false) };
+        let (end, speed) = if sight.open { (last.position, last.velocity) } else { (route.length(), 0.0) };
+        let remarks = self.remarks(&route, &timing, end)?;
+        let parts = cut::by_path(settled, &ends_up_to(&route, end));
+        for (index, part) in parts.iter().enumerate() {
+            let last = index + 1 == parts.len();
+            let to = if last { end } else { route.ends()[index] };
+            let there = joints.jet(to).map_or(self.joints, |jet| jet.position);
+            // Of an open run the last path may go on beyond what is in sight.
+            let part =
+                Part { timing: part, whole: !last || !sight.open, rests: last && !sight.open, joints: there };
+            self.hand_out_part(&part, remarks.of(index), out);
+        }
+        self.run.speed = speed;
+        Ok(true)
+    }
+
+    fn hand_out_part(&mut self, part: &Part<'_, N>, notices: &[String], out: &mut Vec<Planned<N>>) {
+        let from_rest = self.run.speed == 0.0;
+        let Some(piece) = self.run.take_first(part.timing, part.whole, !notices.is_empty()) else { return };
+        let begins = !piece.begun && matches!(piece.info.kind, SegmentKind::Path(_));
+        let at = &piece.link.step.at;
+        let mut planned = if begins { Planned::begin(&piece.link) } else { Planned::part(at) };
+        planned.notices.extend(notices.iter().cloned());
+        if part.whole && matches!(piece.info.kind, SegmentKind::Path(_)) {
+            planned.notices.extend(self.other_configuration(&piece.link, &part.joints));
+        }
+        planned.commands = self.blocks(&piece, part.timing, from_rest, part.rests);
+        planned.segment = Some(piece.info);
+        planned.duration = part.timing.iter().map(|piece| piece.duration).sum();
+        out.push(planned);
+        out.extend(piece.after.iter().map(Planned::of));
+        self.joints = part.joints;
+        self.run.speed = part.timing.last().map_or(self.run.speed, |piece| piece.end().velocity);
+    }
+
+    fn timing_limits(&self) -> TimingLimits<N> {
+        let limits = &self.arm.limits;
+        TimingLimits { velocity: limits.velocity, acceleration: limits.acceleration, jerk: limits.jerk }
+    }
+
+    fn blocks(
+        &self,
+        piece: &Piece<N>,
+        timing: &[TimingPiece],
+        from_rest: bool,
+        rests: bool,
+    ) -> Vec<Command<N>> {
+        let along = (piece.limits.acceleration, piece.limits.jerk);
+        let chunks = timing.chunks(BLOCK_PIECES);
+        let last = chunks.len().saturating_sub(1);
+        let block = |(k, pieces): (usize, &[TimingPiece])| {
+            let motion = PathMotion::new(piece.path, &self.tool.flange_from_tcp, along, pieces)?;
+            Some(Command::Move(Block {
+                line: piece.info.line,
+                segment: piece.info.segment,
+                flange_from_tcp: self.tool.flange_from_tcp,
+                starts_at_rest: from_rest && k == 0,
+                ends_at_rest: rests && k == last,
+                motion: Motion::Path(motion),
+            }))
+        };
+        chunks.enumerate().filter_map(block).collect()
+    }
+
+    /// The move ends in another turn or configuration than the point was taught in.
+    fn other_configuration(&self, link: &Link<N>, end: &[f64; N]) -> Option<String> {
+        let taught = link.goal?.joints.ok()?;
+        let same = if link.pass.is_some() { SAME_JOINT_PASSING } else { SAME_JOINT };
+        let joint = (0..N).find(|&joint| (taught[joint] - end[joint]).abs() > same)?;
+        Some(format!(
+            "ends with joint {} at {:.1} deg, taught at {:.1} deg: the straight way leads to another configuration",
+            self.arm.joint_names[joint],
+            end[joint].to_degrees(),
+            taught[joint].to_degrees()
+        ))
+    }
+
+    /// Remarks on the motion up to `end`; with the arc on, a slowdown may be refused.
+    fn remarks(&mut self, route: &Route, timing: &Timing, end: f64) -> Result<Remarks, PlanError> {
+        Remarks::new(self, route, timing, end).map_err(|(index, problem)| self.give_up(index, problem))
+    }
+
+    fn timing_fault(&mut self, route: &Route, error: &TimingError<InverseError>) -> PlanError {
+        let (s, reason) = match error {
+            TimingError::Path { position, error } => (*position, Reach(error).to_string()),
+            TimingError::Discontinuous { position, joint } => {
+                (*position, self.follow_reason(&FollowError::Jump { joint: *joint }))
+            }
+            TimingError::NoSpeed => (0.0, super::remark::NO_USEFUL_SPEED.into()),
+            error => (0.0, format!("its limits give no motion: {error:?}")),
+        };
+        self.fault(route, s, &reason)
+    }
+
+    /// The move at this place of the run is at fault.
+    fn fault(&mut self, route: &Route, s: f64, reason: &str) -> PlanError {
+        let (index, local) = route.locate(s);
+        let problem = self.run.piece(index).map(|piece| {
+            let at = piece.offset + local;
+            path_problem(&piece.link.path, at, reason, &self.trouble(piece))
+        });
+        let unknown = || Problem::Refused { text: "the move".into(), reason: reason.into() };
+        self.give_up(index, problem.unwrap_or_else(unknown))
+    }
+
+    /// The move of a piece, for which something better is sought.
+    pub(super) fn trouble<'b>(&'b self, piece: &'b Piece<N>) -> Trouble<'b, N, K> {
+        let link = &piece.link;
+        let tool = &self.tool.flange_from_tcp;
+        let kinematics = &self.arm.kinematics;
+        let flange = link.path.pose(0.0) * tool.inverse();
+        let start = kinematics.inverse_nearest(&flange, &self.joints).unwrap_or(self.joints);
+        Trouble { kinematics, path: link.path, flange_from_tcp: tool, start, speed: link.limits.speed }
+    }
+
+    fn follow_reason(&self, error: &FollowError) -> String {
+        let name = |joint: usize| &self.arm.joint_names[joint];
+        match error {
+            FollowError::Inverse(error) => Reach(error).to_string(),
+            FollowError::JointLimit { joint, limit } => {
+                format!("joint {} is at its limit of {:.1} deg", name(*joint), limit.to_degrees())
+            }
+            FollowError::Jump { joint } => {
+                format!("joint {} would have to jump: the path crosses a singularity", name(*joint))
+            }
+        }
+    }
+}

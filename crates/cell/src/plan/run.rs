@@ -1,0 +1,283 @@
+//! The run: moves of the tool centre point that follow each other without a stop, as far as they are known and not yet handed over.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use seamline::geometry::Pose;
+use seamline::path::{Measure, Path, TimingPiece};
+
+use super::corner::{SHARE, limits, passing};
+use super::resolve::Goal;
+use super::route::Route;
+use super::timing::{PathLimits, Stretch};
+use crate::job::{Location, Step};
+use crate::record::{SegmentInfo, SegmentKind};
+
+/// Nominal time that one look ahead covers, in seconds. The timing settles what lies before the stop that it must assume at its end.
+const HORIZON: f64 = 1.0;
+/// A closed run that takes no longer than this many horizons is looked at whole.
+const WHOLE: f64 = 2.0;
+
+/// A move as programmed.
+#[derive(Debug, Clone)]
+pub(super) struct Link<const N: usize> {
+    /// The instruction, with its move.
+    pub(super) step: Step,
+    pub(super) path: Path,
+    pub(super) limits: PathLimits,
+    pub(super) goal: Option<Goal<N>>,
+    /// How far from its end the tool may pass; `None` where the move ends at rest.
+    pub(super) pass: Option<f64>,
+    pub(super) arc: bool,
+    pub(super) notices: Vec<String>,
+}
+
+/// A path of the run with one speed: what is left of a link between its corners, or a corner.
+#[derive(Debug, Clone)]
+pub(super) struct Piece<const N: usize> {
+    /// The move that it is, or that ends in this corner.
+    pub(super) link: Arc<Link<N>>,
+    pub(super) info: SegmentInfo,
+    /// What is not handed over yet.
+    pub(super) path: Path,
+    pub(super) limits: PathLimits,
+    /// Coordinate on the link's path at which `path` begins.
+    pub(super) offset: f64,
+    /// Part of it has been handed over.
+    pub(super) begun: bool,
+    /// Somewhere on it the speed is below the programmed one.
+    slowed: bool,
+    /// Steps that take no time, done when the piece is.
+    pub(super) after: Vec<Step>,
+}
+
+/// How far the next timing looks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Sight {
+    pub(super) to: f64,
+    /// The run goes on beyond.
+    pub(super) open: bool,
+}
+
+/// The run.
+#[derive(Debug, Clone)]
+pub(super) struct Run<const N: usize> {
+    pieces: VecDeque<Piece<N>>,
+    /// Speed at its start, where there is no acceleration.
+    pub(super) speed: f64,
+}
+
+/// Why a move cannot be run on to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Stops(pub(super) &'static str);
+
+impl<const N: usize> Default for Run<N> {
+    fn default() -> Self {
+        Self { pieces: VecDeque::new(), speed: 0.0 }
+    }
+}
+
+impl<const N: usize> Link<N> {
+    pub(super) fn at(&self) -> &Location {
+        &self.step.at
+    }
+
+    /// What its motion is held against.
+    pub(super) fn info(&self, segment: u32) -> SegmentInfo {
+        SegmentInfo {
+            segment,
+            line: self.at().line,
+            kind: SegmentKind::Path(self.path),
+            speed: Some(self.limits.speed),
+            arc: self.arc,
+            constant_part: None,
+        }
+    }
+
+    /// Whether the tool centre point moves: a turn on the spot stands alone.
+    pub(super) fn travels(&self) -> bool {
+        self.path.measure() == Measure::Length
+    }
+}
+
+impl<const N: usize> Run<N> {
+    pub(super) fn is_empty(&self) -> bool {
+        self.pieces.is_empty()
+    }
+
+    pub(super) fn last(&self) -> Option<&Link<N>> {
+        self.pieces.back().map(|piece| &*piece.link)
+    }
+
+    /// Where it leads.
+    pub(super) fn end(&self) -> Option<Pose> {
+        self.last().map(|link| link.path.pose(link.path.length()))
+    }
+
+    /// Begins with a move.
+    pub(super) fn begin(&mut self, link: &Link<N>, segment: &mut u32) {
+        self.add(link, link.path, 0.0, segment);
+    }
+
+    /// Goes on with a move; `segment` counts on.
+    ///
+    /// # Errors
+    /// [`Stops`] where the robot must stop on the point between; the run is unchanged.
+    pub(super) fn push(&mut self, link: &Link<N>, segment: &mut u32) -> Result<(), Stops> {
+        let Some(last) = self.pieces.back_mut() else {
+            self.begin(link, segment);
+            return Ok(());
+        };
+        let lengths = [last.link.path.length(), link.path.length()];
+        let speed = last.limits.speed.max(link.limits.speed);
+        let error = last.link.pass.unwrap_or(0.0);
+        let Some(blend) = passing([&last.path, &link.path], lengths, speed, error)? else {
+            self.add(link, link.path, 0.0, segment);
+            return Ok(());
+        };
+        last.path = blend.before;
+        *segment += 1;
+        let corner = last.corner(&blend.path, limits(&blend, &last.limits, &link.limits), *segment);
+        self.pieces.push_back(corner);
+        self.add(link, blend.after, blend.trims[1], segment);
+        Ok(())
+    }
+
+    fn add(&mut self, link: &Link<N>, path: Path, offset: f64, segment: &mut u32) {
+        *segment += 1;
+        let (info, limits) = (link.info(*segment), link.limits);
+        let link = Arc::new(link.clone());
+        let after = Vec::new();
+        self.pieces.push_back(Piece { link, info, path, limits, offset, begun: false, slowed: false, after });
+    }
+
+    /// A step that takes no time, when all moves so far are done.
+    pub(super) fn add_aside(&mut self, step: Step) {
+        if let Some(last) = self.pieces.back_mut() {
+            last.after.push(step);
+        }
+    }
+
+    /// How far the next timing is to look, `factor` times as far as usual; `None` where more of the run must be known first.
+    pub(super) fn sight(&self, closed: bool, factor: f64) -> Option<Sight> {
+        let last = self.pieces.back()?;
+        let whole: f64 = self.pieces.iter().map(|piece| piece.path.length()).sum();
+        let time: f64 = self.pieces.iter().map(|piece| piece.path.length() / piece.limits.speed).sum();
+        if closed && time <= WHOLE * HORIZON * factor {
+            return Some(Sight { to: whole, open: false });
+        }
+        // The end of the last move may yet become a corner.
+        let certain = if closed { whole } else { whole - SHARE * last.link.path.length() };
+        let to = self.reached_in(HORIZON * factor);
+        (to < certain).then_some(Sight { to, open: true })
+    }
+
+    /// The coordinate reached after a time at programmed speeds.
+    fn reached_in(&self, time: f64) -> f64 {
+        let mut left = time;
+        let mut s = 0.0;
+        for piece in &self.pieces {
+            let takes = piece.path.length() / piece.limits.speed;
+            if takes >= left {
+                return s + left * piece.limits.speed;
+            }
+            (left, s) = (left - takes, s + piece.path.length());
+        }
+        s
+    }
+
+    /// The way up to a coordinate, with its limits.
+    pub(super) fn route(&self, to: f64) -> (Route, Vec<Stretch>) {
+        let (mut route, mut stretches) = (Route::default(), Vec::new());
+        for piece in &self.pieces {
+            let left = to - route.length();
+            if left <= 0.0 {
+                break;
+            }
+            let path = if left < piece.path.length() { piece.path.part(0.0, left) } else { piece.path };
+            route.push(path);
+            stretches.push(Stretch { to: route.length(), limits: piece.limits });
+        }
+        (route, stretches)
+    }
+
+    pub(super) fn piece(&self, index: usize) -> Option<&Piece<N>> {
+        self.pieces.get(index)
+    }
+
+    /// Takes the first piece with its timing: the whole of what is left of it, or as far as the timing goes.
+    pub(super) fn take_first(
+        &mut self,
+        timing: &[TimingPiece],
+        whole: bool,
+        slowed: bool,
+    ) -> Option<Piece<N>> {
+        let first = self.pieces.front_mut()?;
+        first.slowed |= slowed;
+        first.info.constant_part = first.constant_part(timing);
+        if whole {
+            return self.pieces.pop_front();
+        }
+        let place = timing.last().map_or(0.0, |piece| piece.end().position);
+        let length = first.path.length();
+        let mut taken = first.clone();
+        taken.path = first.path.part(0.0, place);
+        taken.after.clear();
+        first.path = first.path.part(place, length);
+        first.offset += place;
+        first.begun = true;
+        Some(taken)
+    }
+
+    /// Gives the run up: the steps that would have followed the piece with this number and its link.
+    pub(super) fn give_up_after(&mut self, index: usize) -> Vec<Step> {
+        let pieces = std::mem::take(&mut self.pieces);
+        self.speed = 0.0;
+        let Some(failed) = pieces.get(index).map(|piece| Arc::clone(&piece.link)) else { return Vec::new() };
+        let mut steps = Vec::new();
+        let mut of = failed;
+        for piece in pieces.into_iter().skip(index) {
+            if !Arc::ptr_eq(&piece.link, &of) {
+                steps.push(piece.link.step.clone());
+                of = Arc::clone(&piece.link);
+            }
+            steps.extend(piece.after);
+        }
+        steps
+    }
+}
+
+impl<const N: usize> Piece<N> {
+    /// The corner that this move, which has been cut short for it, ends in. What follows the move follows the corner.
+    fn corner(&mut self, blend: &Path, limits: PathLimits, segment: u32) -> Self {
+        let link = Arc::clone(&self.link);
+        let length = link.path.length();
+        let kind = SegmentKind::Corner {
+            path: *blend,
+            corner: link.path.pose(length).translation.vector,
+            permitted: link.pass.unwrap_or(0.0),
+        };
+        let info = SegmentInfo { segment, kind, speed: Some(limits.speed), constant_part: None, ..self.info };
+        let after = std::mem::take(&mut self.after);
+        Self { link, info, path: *blend, limits, offset: length, begun: false, slowed: false, after }
+    }
+
+    /// From where to where the plan holds the programmed speed, with what this timing adds; in the coordinate of the link.
+    fn constant_part(&self, timing: &[TimingPiece]) -> Option<[f64; 2]> {
+        if self.slowed || !matches!(self.info.kind, SegmentKind::Path(_)) {
+            return None;
+        }
+        let cruises = |piece: &&TimingPiece| {
+            piece.acceleration == 0.0
+                && piece.jerk == 0.0
+                && piece.velocity >= self.limits.speed * (1.0 - 1e-9)
+        };
+        let first = timing.iter().find(cruises).map(|piece| self.offset + piece.position);
+        let last = timing.iter().rev().find(cruises).map(|piece| self.offset + piece.end().position);
+        match (self.info.constant_part, first, last) {
+            (Some([from, _]), _, Some(to)) => Some([from, to]),
+            (None, Some(from), Some(to)) => Some([from, to]),
+            (before, ..) => before,
+        }
+    }
+}

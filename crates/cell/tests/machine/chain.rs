@@ -1,0 +1,260 @@
+//! Moves that run on into each other: planned as a run, executed by the cycle, judged by an independent arm model.
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use seamline::control::{Command, Event, Mode};
+use seamline::kinematics::Kinematics;
+use seamline_cell::cell::Cell;
+use seamline_cell::job::{
+    Action, MovePath, Speed, SplinePiece, Step, Zone, joints_from_pulses, pulses_from_joints,
+};
+use seamline_cell::plan::{Arm, Planned, Planner};
+
+use crate::bench::{Ar2010, Bench, independent_forward, independent_torch, move_to, worst_shares};
+
+/// Joints in which the tool is at home in front of the robot.
+const HOME: [f64; 6] = [0.0, 0.2, -0.2, 0.1, -1.2, 0.3];
+
+struct Way {
+    cell: Cell,
+    arm: Ar2010,
+    /// The taught poses, the start first.
+    poses: Vec<Isometry3<f64>>,
+    joints: Vec<[f64; 6]>,
+}
+
+impl Way {
+    /// Points by their distance from the start, in mm in a plane that lies askew, and a turn of the tool in degrees about its z axis.
+    fn new(points: &[([f64; 2], f64)]) -> Self {
+        let cell = Cell::default_cell().unwrap();
+        let arm: Ar2010 = Arm::from_cell(&cell).unwrap();
+        let torch = independent_torch();
+        let start = independent_forward(&HOME) * torch;
+        let (u, v) = (Vector3::new(0.6, 0.8, 0.0), Vector3::new(-0.48, 0.36, 0.8));
+        let (mut poses, mut joints) = (vec![start], vec![HOME]);
+        for ([x, y], degrees) in points {
+            let mut pose = start;
+            pose.translation.vector += (u * *x + v * *y) / 1000.0;
+            pose.rotation *= UnitQuaternion::from_axis_angle(&Vector3::z_axis(), degrees.to_radians());
+            let q = arm.kinematics.inverse_nearest(&(pose * torch.inverse()), &HOME).unwrap();
+            // The point is where the pulses say, some micrometres off.
+            let pulses = pulses_from_joints(&q, &arm.pulses_per_degree);
+            let q: [f64; 6] = joints_from_pulses(&pulses, &arm.pulses_per_degree).unwrap();
+            poses.push(independent_forward(&q) * torch);
+            joints.push(q);
+        }
+        Self { cell, arm, poses, joints }
+    }
+
+    fn step(&self, point: usize, path: MovePath, mm_s: f64, zone: Zone) -> Step {
+        let speed = Speed::Linear { mm_s };
+        let mut step = move_to(point as u32, path, speed, &self.arm, &self.joints[point]);
+        if let Action::Move(r#move) = &mut step.action {
+            r#move.zone = zone;
+        }
+        step
+    }
+
+    fn lines(&self, mm_s: f64, zone: Zone) -> Vec<Step> {
+        (1..self.poses.len()).map(|point| self.step(point, MovePath::Linear, mm_s, zone)).collect()
+    }
+
+    fn plan(&self, steps: &[Step]) -> Vec<Planned<6>> {
+        let mut planner = Planner::new(&self.arm, &self.cell, HOME).unwrap();
+        let mut parts = Vec::new();
+        for step in steps {
+            planner.take(step, &mut parts).unwrap();
+        }
+        planner.finish(&mut parts).unwrap();
+        parts
+    }
+
+    fn run(&self, parts: &[Planned<6>]) -> Trace {
+        let mut arm = self.arm.clone();
+        arm.home = HOME;
+        let mut cell = self.cell.clone();
+        for (joint, home) in cell.robot.joints.iter_mut().zip(HOME) {
+            joint.home = home;
+        }
+        // As in a run of the program, a marker follows each part.
+        let mark = |(k, part): (usize, &Planned<6>)| {
+            part.commands.iter().copied().chain([Command::Marker(k as u32 + 1)]).collect::<Vec<_>>()
+        };
+        let mut commands: Vec<_> = parts.iter().enumerate().flat_map(mark).collect();
+        commands.push(Command::End);
+        let mut bench = Bench::new(&cell, &arm, commands);
+        bench.cycle_with(Event::Start);
+        let mut trace = Trace { joints: Vec::new(), tools: Vec::new(), segments: Vec::new() };
+        for _ in 0..100_000 {
+            let output = bench.cycle();
+            assert_eq!(output.status.fault, None);
+            trace.joints.push(output.command.position);
+            trace.tools.push(independent_forward(&output.command.position) * independent_torch());
+            trace.segments.push(output.status.segment);
+            if output.status.mode == Mode::Standstill {
+                let shares = worst_shares(&trace.joints, &self.arm, cell.cycle.period);
+                assert!(shares[0] <= 1.0 && shares[1] <= 1.001 && shares[2] <= 1.01, "{shares:?}");
+                return trace;
+            }
+        }
+        panic!("the run does not end");
+    }
+}
+
+struct Trace {
+    joints: Vec<[f64; 6]>,
+    tools: Vec<Isometry3<f64>>,
+    segments: Vec<u32>,
+}
+
+impl Trace {
+    /// Least distance of the way from a point, in mm.
+    fn distance(&self, point: &Isometry3<f64>) -> f64 {
+        let p = point.translation.vector;
+        let between = |pair: &[Isometry3<f64>]| {
+            let (from, to) = (pair[0].translation.vector, pair[1].translation.vector);
+            let way = to - from;
+            let share = if way.norm() > 0.0 { (p - from).dot(&way) / way.norm_squared() } else { 0.0 };
+            (p - from - way * share.clamp(0.0, 1.0)).norm()
+        };
+        self.tools.windows(2).map(between).fold(f64::INFINITY, f64::min) * 1000.0
+    }
+
+    /// Speed of the tool centre point in each cycle, in mm/s.
+    fn speeds(&self) -> Vec<f64> {
+        let speed =
+            |pair: &[Isometry3<f64>]| (pair[1].translation.vector - pair[0].translation.vector).norm() * 1e6;
+        self.tools.windows(2).map(speed).collect()
+    }
+
+    /// The speeds between the first and the last instant at which `programmed` was reached.
+    fn travelling(&self, programmed: f64) -> Vec<f64> {
+        let speeds = self.speeds();
+        let reached = |speed: &f64| *speed >= programmed * 0.999;
+        let first = speeds.iter().position(reached).unwrap();
+        let last = speeds.iter().rposition(reached).unwrap();
+        speeds[first..=last].to_vec()
+    }
+}
+
+/// A zigzag with corners from 20 to 150 degrees at weld speed: no stop, the programmed speed all along, and each corner
+/// passed at the error of the cell file.
+#[test]
+fn corners_are_passed_at_speed_within_their_error() {
+    let way = Way::new(&[
+        ([40.0, 0.0], 0.0),
+        ([75.0, 13.0], 3.0),
+        ([75.0, 60.0], 0.0),
+        ([45.0, 25.0], -4.0),
+        ([80.0, 22.0], 0.0),
+    ]);
+    let trace = way.run(&way.plan(&way.lines(10.0, Zone::Unspecified)));
+    let speeds = trace.travelling(10.0);
+    let (least, greatest) = speeds.iter().fold((f64::INFINITY, 0.0_f64), |(l, g), s| (l.min(*s), g.max(*s)));
+    assert!(least > 9.9 && greatest < 10.01, "{least} … {greatest}");
+    // The slight bend is rounded near its point only.
+    let slight = trace.distance(&way.poses[1]);
+    assert!((0.05..=0.5).contains(&slight), "{slight}");
+    for pose in &way.poses[2..5] {
+        let error = trace.distance(pose);
+        assert!((0.49..=0.5 + 1e-3).contains(&error), "{error}");
+    }
+    assert!(trace.distance(&way.poses[5]) < 1e-3);
+}
+
+/// Position levels, a corner radius and exact stops in one chain, at several speeds.
+#[test]
+fn each_zone_has_its_own_error() {
+    let way = Way::new(&[
+        ([60.0, 0.0], 0.0),
+        ([60.0, 60.0], 0.0),
+        ([0.0, 60.0], 0.0),
+        ([0.0, 120.0], 0.0),
+        ([60.0, 120.0], 0.0),
+    ]);
+    let zones = [Zone::Level(1), Zone::Level(4), Zone::CornerRadius { mm: 5.0 }, Zone::Exact, Zone::Exact];
+    let speeds = [100.0, 20.0, 300.0, 50.0, 50.0];
+    let steps: Vec<Step> = (0..5).map(|k| way.step(k + 1, MovePath::Linear, speeds[k], zones[k])).collect();
+    let trace = way.run(&way.plan(&steps));
+    for (k, permitted) in [0.5, 3.0, 5.0 * (2_f64.sqrt() - 1.0), 0.0, 0.0].into_iter().enumerate() {
+        let error = trace.distance(&way.poses[k + 1]);
+        let reached = error <= permitted * 1.001 + 1e-3 && error >= permitted * 0.98 - 1e-3;
+        assert!(reached, "point {}: {error} mm of {permitted}", k + 1);
+    }
+    let stops = trace.speeds().windows(2).filter(|pair| pair[0] > 0.1 && pair[1] <= 0.1).count();
+    assert_eq!(stops, 2, "at the two exact points only");
+}
+
+/// Lines that continue each other are one line: the speed is kept over the points between, on the line.
+#[test]
+fn collinear_moves_are_one_line() {
+    let way = Way::new(&[([10.0, 0.0], 0.0), ([30.0, 0.0], 0.0), ([33.0, 0.0], 0.0), ([80.0, 0.0], 0.0)]);
+    let parts = way.plan(&way.lines(20.0, Zone::Unspecified));
+    let trace = way.run(&parts);
+    let speeds = trace.travelling(20.0);
+    assert!(speeds.iter().all(|speed| (speed - 20.0).abs() < 0.02), "{speeds:?}");
+    let (from, to) = (way.poses[0].translation.vector, way.poses[4].translation.vector);
+    let direction = (to - from).normalize();
+    for tool in &trace.tools {
+        let offset = tool.translation.vector - from;
+        let off = (offset - direction * offset.dot(&direction)).norm();
+        // As far as the points are, by their pulses.
+        assert!(off < 1e-5, "{off}");
+    }
+    let times: f64 = parts.iter().map(|part| part.duration).sum();
+    assert!((times - (80.0 / 20.0 + 0.03)).abs() < 0.005, "{times}");
+    let numbers: Vec<u32> = trace.segments.chunk_by(|a, b| a == b).map(|chunk| chunk[0]).collect();
+    assert!(numbers.is_sorted(), "{numbers:?}");
+}
+
+/// A long chain is handed out bit by bit, and comes to the same as what is known at once.
+#[test]
+fn a_run_is_handed_out_as_it_becomes_known() {
+    let points: Vec<([f64; 2], f64)> =
+        (1..=30).map(|k| ([f64::from(k) * 4.0, if k % 2 == 0 { 0.0 } else { 6.0 }], 0.0)).collect();
+    let way = Way::new(&points);
+    let mut planner = Planner::new(&way.arm, &way.cell, HOME).unwrap();
+    let (mut parts, mut handed_out) = (Vec::new(), Vec::new());
+    for step in way.lines(20.0, Zone::Unspecified) {
+        planner.take(&step, &mut parts).unwrap();
+        handed_out.push(parts.len());
+    }
+    assert!(handed_out[12] > 0 && handed_out[29] > handed_out[12], "{handed_out:?}");
+    planner.finish(&mut parts).unwrap();
+    let trace = way.run(&parts);
+    let speeds = trace.travelling(20.0);
+    assert!(speeds.iter().all(|speed| (19.8..20.02).contains(speed)), "{speeds:?}");
+    for pose in &way.poses[1..30] {
+        assert!(trace.distance(pose) <= 0.5 + 1e-3);
+    }
+}
+
+/// A spline passes its points exactly and without a stop.
+#[test]
+fn a_spline_passes_its_points() {
+    let way = Way::new(&[
+        ([10.0, 0.0], 0.0),
+        ([25.0, 12.0], 5.0),
+        ([45.0, 10.0], 0.0),
+        ([60.0, -5.0], -5.0),
+        ([80.0, 0.0], 0.0),
+    ]);
+    let mut steps = way.lines(15.0, Zone::Unspecified);
+    let target = |step: &Step| match &step.action {
+        Action::Move(r#move) => r#move.target.clone(),
+        _ => unreachable!(),
+    };
+    let points: std::sync::Arc<[_]> = steps.iter().map(target).collect();
+    for (end, step) in steps.iter_mut().enumerate().skip(1) {
+        if let Action::Move(r#move) = &mut step.action {
+            r#move.path = MovePath::Spline(SplinePiece { points: points.clone(), end });
+        }
+    }
+    let trace = way.run(&way.plan(&steps));
+    // The line before leads into it with a corner; from there on it is exact.
+    for pose in &way.poses[2..] {
+        let error = trace.distance(pose);
+        assert!(error < 1e-3, "{error}");
+    }
+    let speeds = trace.travelling(15.0);
+    assert!(speeds.iter().all(|speed| (14.85..15.02).contains(speed)), "{speeds:?}");
+}
