@@ -181,11 +181,17 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
             let index = parts.partition_point(|part| part.window.to <= place);
             parts.get(index).is_some_and(|part| part.passage.anchors.contains(&place))
         };
+        // The next call starts from a plain motion, which has to be able to brake from there.
+        let stops = |piece: &TimingPiece| {
+            Plain::new::<P::Error>(&self.limits.after(piece.position), piece.velocity).is_ok()
+        };
         let full = |piece: &TimingPiece| {
             let limit = self.limits.within(piece.position, piece.position).speed;
             piece.acceleration == 0.0 && piece.velocity >= limit * (1.0 - ROUNDING)
         };
-        let ends = |piece: &TimingPiece| anchored(piece.position) || (full(piece) && free(piece.position));
+        let ends = |piece: &TimingPiece| {
+            (anchored(piece.position) && stops(piece)) || (full(piece) && free(piece.position))
+        };
         pieces.iter().rposition(ends).unwrap_or(0)
     }
 }
