@@ -190,7 +190,7 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
             piece.acceleration == 0.0 && piece.velocity >= limit * (1.0 - ROUNDING)
         };
         let ends = |piece: &TimingPiece| {
-            (anchored(piece.position) && stops(piece)) || (full(piece) && free(piece.position))
+            (anchored(piece.position) || (full(piece) && free(piece.position))) && stops(piece)
         };
         pieces.iter().rposition(ends).unwrap_or(0)
     }

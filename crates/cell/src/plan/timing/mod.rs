@@ -29,8 +29,8 @@
 //! # A path that goes on
 //! With [`Course::open`] the path ends at rest only until more of it is known. [`Timing::settled`] tells which
 //! pieces do not depend on that; the next call starts behind them, in motion. The rest of the motion stays the way
-//! out: it ends at rest within all limits, whatever comes. With 1 s known ahead, chains beside singularities took at
-//! most 3 % longer than timed whole, with 2 s 0.1 %. With 0.5 s it may happen that no motion is found from a start
+//! out: it ends at rest within all limits, whatever comes. With 1 s known ahead, of some 290 chains the slowest
+//! took 10 % longer than timed whole, with 2 s 7 %, both beside a shoulder singularity. With 0.5 s it may happen that no motion is found from a start
 //! in motion, and the tool has to stop.
 //!
 //! # What is sure
