@@ -18,6 +18,8 @@ const WIDER: f64 = 4.0;
 const ROUNDS: usize = 4;
 /// A window begins and ends with so much of a cruise, in seconds, where there is one.
 const INSET: f64 = 0.02;
+/// From a start in motion, a motion that would have to be stretched by this stands as it is, rather than none.
+const BEARABLE: f64 = 1.0005;
 /// Bound on the rounds of stretching. Where a limit is passed far, the judge says so without saying how far,
 /// and each round stretches by half as much again.
 const STRETCHINGS: usize = 100;
@@ -74,7 +76,7 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
         }
         let stretch = parts.iter().fold(1.0, |most: f64, part| most.max(part.passage.stretch));
         let pieces = joined(&plain, &parts);
-        if parts.iter().all(|part| part.passage.good()) {
+        if parts.iter().all(|part| part.passage.good()) || (self.start > 0.0 && stretch <= BEARABLE) {
             let (slowdowns, settled) = (slowdowns(self, &plain, &pieces)?, self.settled(&pieces, &parts));
             return Ok(Timing::new(pieces, TimingKind::Optimized, slowdowns).settled_for(settled));
         }
@@ -132,9 +134,11 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
     ) -> Result<Vec<Part>, TimingError<P::Error>> {
         let mut parts = Vec::with_capacity(windows.len());
         for (window, [from, to]) in windows {
+            let last = self.open && window.to == self.path.length();
+            let braking = last.then(|| self.longest_braking());
             let passage = match known.iter().position(|part| part.window == window) {
                 Some(index) => known.swap_remove(index).passage,
-                None => match workshop.pass(self.path, self.joints, self.limits, &window) {
+                None => match workshop.pass(self.path, self.joints, self.limits, &window, braking) {
                     // Where rounding makes the path look torn: slower it may not.
                     Err(TimingError::Discontinuous { .. }) => Passage::NONE,
                     passage => passage?,
@@ -164,7 +168,7 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
     }
 
     /// How many pieces, from the start, do not depend on what comes behind the end: up to the last place where
-    /// the motion is plain, at the programmed speed and without acceleration.
+    /// the motion is plain, at the programmed speed and without acceleration, or at an anchor.
     fn settled(&self, pieces: &[TimingPiece], parts: &[Part]) -> usize {
         if !self.open {
             return pieces.len();
@@ -173,11 +177,22 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
             let index = parts.partition_point(|part| part.window.to <= place);
             parts.get(index).is_none_or(|part| place <= part.window.from)
         };
+        let anchored = |place: f64| {
+            let index = parts.partition_point(|part| part.window.to <= place);
+            parts.get(index).is_some_and(|part| part.passage.anchors.contains(&place))
+        };
+        // The next call starts from a plain motion, which has to be able to brake from there.
+        let stops = |piece: &TimingPiece| {
+            Plain::new::<P::Error>(&self.limits.after(piece.position), piece.velocity).is_ok()
+        };
         let full = |piece: &TimingPiece| {
             let limit = self.limits.within(piece.position, piece.position).speed;
             piece.acceleration == 0.0 && piece.velocity >= limit * (1.0 - ROUNDING)
         };
-        pieces.iter().rposition(|piece| full(piece) && free(piece.position)).unwrap_or(0)
+        let ends = |piece: &TimingPiece| {
+            (anchored(piece.position) || (full(piece) && free(piece.position))) && stops(piece)
+        };
+        pieces.iter().rposition(ends).unwrap_or(0)
     }
 }
 

@@ -112,6 +112,13 @@ impl Limits {
         limits
     }
 
+    /// The limits from a place on, which becomes the start.
+    pub(super) fn after(&self, place: f64) -> Self {
+        let ahead = self.stretches.iter().filter(|stretch| stretch.to > place);
+        let stretches = ahead.map(|stretch| Stretch { to: stretch.to - place, ..*stretch }).collect();
+        Self { stretches, length: self.length - place }
+    }
+
     /// Limits of each stretch, in order.
     pub(super) fn all(&self) -> impl Iterator<Item = &PathLimits> {
         self.stretches.iter().map(|stretch| &stretch.limits)

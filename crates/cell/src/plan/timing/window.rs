@@ -1,5 +1,6 @@
 //! One window of the path: the fastest motion through it.
 
+use super::anchor::{Anchor, anchors, bent};
 use super::check::{Check, Load};
 use super::coordinate::{Coordinate, End};
 use super::course::Limits;
@@ -24,12 +25,14 @@ const LAST_STRETCH: f64 = 1.003;
 const EASINGS: usize = 3;
 const EASING: f64 = 0.04;
 /// What may be left, for the first moments of a cruise that easing does not reach; and what rounding may add.
-const LEFT: f64 = 1e-6;
+const LEFT: f64 = 1e-5;
 pub(super) const ROUNDING: f64 = 1e-9;
 /// Shares of a limit that a repair leaves: what it aims at, and the least.
 const AIM: f64 = 0.9995;
 const LEAST_SHARE: f64 = 0.2;
-/// Slack of the speed limit at a held end; sites next to it whose speed limit is not lowered.
+/// Slack of the speed limit at a held end; sites next to it whose speed limit is not lowered, where its speed is this
+/// share of the limit or more.
+const AT_LIMIT: f64 = 0.9995;
 const HELD_SLACK: f64 = 0.01;
 const HELD_SITES: usize = 20;
 
@@ -45,11 +48,13 @@ pub(super) struct Window {
 pub(super) struct Passage {
     pub(super) pieces: Vec<TimingPiece>,
     pub(super) stretch: f64,
+    /// Places inside where the motion is held without acceleration, and nothing before depends on what comes after.
+    pub(super) anchors: Vec<f64>,
 }
 
 impl Passage {
     /// No motion was found.
-    pub(super) const NONE: Self = Self { pieces: Vec::new(), stretch: f64::INFINITY };
+    pub(super) const NONE: Self = Self { pieces: Vec::new(), stretch: f64::INFINITY, anchors: Vec::new() };
 
     /// Whether it keeps all limits as it is.
     pub(super) fn good(&self) -> bool {
@@ -98,23 +103,63 @@ pub(super) struct Workshop {
 
 impl Workshop {
     /// The fastest motion through the window that was found: on the coordinate of the first guess roughly,
-    /// then on the coordinate of that motion, with limits lowered until the judge is content.
+    /// then on the coordinate of that motion, from anchor to anchor. `braking`: as for [`anchors`].
     pub(super) fn pass<const N: usize, P: JointPath<N>>(
         &mut self,
         path: &mut P,
         joints: &TimingLimits<N>,
         limits: &Limits,
         window: &Window,
+        braking: Option<f64>,
     ) -> Result<Passage, TimingError<P::Error>> {
         let coarse = crude::coordinate(path, joints, limits, window, COARSE_STEP)?;
         self.set_sites(path, limits, window, &coarse)?;
         self.set_demands(joints, window, coarse.step);
         let solved = self.solver.solve(&self.program, COARSE_ACCURACY);
-        let Some(pieces) = self.pieces(solved, &coarse, window) else {
+        let Some(rough) = self.pieces(solved, &coarse, window) else {
             return Ok(Passage::NONE);
         };
-        let knots = crude::knots(duration(&pieces), STEP);
-        let coordinate = Coordinate::following(&pieces, knots, window.ends);
+        let mut cuts = vec![Anchor { piece: 0, place: window.from, speed: window.ends[0].speed() }];
+        cuts.extend(anchors(path, joints, limits, &rough, braking)?);
+        cuts.push(Anchor { piece: rough.len(), place: window.to, speed: window.ends[1].speed() });
+        let mut passages: Vec<Passage> = Vec::new();
+        // Each turn finishes a part, or takes one anchor away.
+        while let [from, to] = cuts[passages.len()..][..2] {
+            let part =
+                Window { from: from.place, to: to.place, ends: [End::at(from.speed), End::at(to.speed)] };
+            let rough = &rough[from.piece..to.piece];
+            let guess = if cuts.len() == 2 { rough.to_vec() } else { bent(rough, part.ends) };
+            let passage = self.refined(path, joints, limits, &part, &guess)?;
+            let (first, last) = (passages.is_empty(), passages.len() + 2 == cuts.len());
+            if passage.good() || (first && last) {
+                passages.push(passage);
+                if last {
+                    break;
+                }
+            } else if last {
+                passages.pop();
+                cuts.remove(passages.len() + 1);
+            } else {
+                cuts.remove(passages.len() + 1);
+            }
+        }
+        let anchors = cuts[1..cuts.len() - 1].iter().map(|anchor| anchor.place).collect();
+        let stretch = passages.iter().fold(1.0, |most: f64, passage| most.max(passage.stretch));
+        let pieces = passages.into_iter().flat_map(|passage| passage.pieces).collect();
+        Ok(Passage { pieces, stretch, anchors })
+    }
+
+    /// The fastest motion on the coordinate of a guess, with limits lowered until the judge is content.
+    fn refined<const N: usize, P: JointPath<N>>(
+        &mut self,
+        path: &mut P,
+        joints: &TimingLimits<N>,
+        limits: &Limits,
+        window: &Window,
+        guess: &[TimingPiece],
+    ) -> Result<Passage, TimingError<P::Error>> {
+        let knots = crude::knots(duration(guess), STEP);
+        let coordinate = Coordinate::following(guess, knots, window.ends);
         self.set_sites(path, limits, window, &coordinate)?;
         let mut best = Passage::NONE;
         for round in 0..=REPAIRS {
@@ -125,16 +170,19 @@ impl Workshop {
             };
             let Some(pieces) = self.pieces(solved, &coordinate, window) else { break };
             let (loads, stretch) = judged(path, joints, limits, &pieces)?;
-            let passage = Passage { pieces, stretch };
+            let mut passage = Passage { pieces, stretch, anchors: Vec::new() };
+            if stretch <= STRETCH {
+                passage.ease(path, joints, limits, window)?;
+            }
+            if passage.good() {
+                return Ok(passage);
+            }
             if passage.duration() < best.duration() {
                 best = passage;
             }
-            if best.stretch <= STRETCH {
-                break;
-            }
             self.tighten(&loads, window, N + 1);
         }
-        if best.stretch <= LAST_STRETCH {
+        if best.stretch > STRETCH && best.stretch <= LAST_STRETCH {
             best.ease(path, joints, limits, window)?;
         }
         Ok(best)
@@ -236,8 +284,13 @@ impl Workshop {
     /// Lowers the limits of both sites around half a piece by what it takes too much.
     fn tighten<const N: usize>(&mut self, loads: &[Load<N>], window: &Window, axes: usize) {
         let held = window.ends.map(|end| !end.rests());
+        let limits = [self.path_limits.first(), self.path_limits.last()];
+        let at_limit: [bool; 2] = core::array::from_fn(|end| {
+            limits[end].is_some_and(|limits| window.ends[end].speed() > AT_LIMIT * limits[0])
+        });
         for (half, load) in loads.iter().enumerate() {
-            let near_held = (held[0] && half < HELD_SITES) || (held[1] && half + HELD_SITES >= loads.len());
+            let near_held =
+                (at_limit[0] && half < HELD_SITES) || (at_limit[1] && half + HELD_SITES >= loads.len());
             for axis in 0..axes {
                 for order in 0..3 {
                     let share = if axis < N { load.joints[order][axis] } else { load.path[order] };
