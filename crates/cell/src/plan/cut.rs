@@ -36,6 +36,11 @@ pub(super) fn by_path(pieces: &[TimingPiece], ends: &[f64]) -> Vec<Vec<TimingPie
     parts
 }
 
+/// Pieces with a coordinate that begins at a place.
+pub(super) fn moved_back(pieces: &[TimingPiece], place: f64) -> Vec<TimingPiece> {
+    pieces.iter().map(|piece| TimingPiece { position: piece.position - place, ..*piece }).collect()
+}
+
 /// What is left of a piece after a time.
 fn rest(piece: &TimingPiece, time: f64) -> TimingPiece {
     let state = piece.at(time);

@@ -28,18 +28,10 @@ const SAME_JOINT_PASSING: f64 = 0.5;
 #[derive(Debug, Clone, Copy)]
 struct Part<'a, const N: usize> {
     timing: &'a [TimingPiece],
-    /// All that is left of it.
-    whole: bool,
     /// The robot is at rest afterwards.
     rests: bool,
     /// Where the joints are afterwards.
     joints: [f64; N],
-}
-
-/// Where the paths of a route end, up to a place.
-fn ends_up_to(route: &Route, end: f64) -> Vec<f64> {
-    let count = route.ends().partition_point(|place| *place < end);
-    route.ends()[..count].iter().copied().chain([end]).collect()
 }
 
 impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
@@ -79,34 +71,59 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let course = Course { stretches: &stretches, start: self.run.speed, open: sight.open };
         let timing = match time_path(&mut joints, &self.timing_limits(), &course) {
             Ok(timing) => timing,
+            Err(TimingError::Start { .. } | TimingError::NoSpeed) if !self.run.way_to_rest.is_empty() => {
+                self.come_to_rest(&mut joints, out);
+                return Ok(true);
+            }
             Err(error) => return Err(self.timing_fault(&route, &error)),
         };
-        let settled = &timing.pieces()[..timing.settled()];
+        let (settled, rest) = timing.pieces().split_at(timing.settled());
         let Some(last) = settled.last().map(TimingPiece::end) else { return Ok(false) };
-        let (end, speed) = if sight.open { (last.position, last.velocity) } else { (route.length(), 0.0) };
+        let end = if sight.open { last.position } else { route.length() };
         let remarks = self.remarks(&route, &timing, end)?;
-        let parts = cut::by_path(settled, &ends_up_to(&route, end));
-        for (index, part) in parts.iter().enumerate() {
-            let last = index + 1 == parts.len();
-            let to = if last { end } else { route.ends()[index] };
-            let there = joints.jet(to).map_or(self.joints, |jet| jet.position);
-            // Of an open run the last path may go on beyond what is in sight.
-            let part =
-                Part { timing: part, whole: !last || !sight.open, rests: last && !sight.open, joints: there };
+        self.hand_out_up_to(end, !sight.open, settled, &mut joints, &remarks, out);
+        self.run.way_to_rest = cut::moved_back(rest, end);
+        Ok(true)
+    }
+
+    /// The way that was planned to rest where the run was known to end: for a run that does not go on in motion.
+    fn come_to_rest(&mut self, joints: &mut PathJoints<'_, N, K>, out: &mut Vec<Planned<N>>) {
+        let way = std::mem::take(&mut self.run.way_to_rest);
+        let end = way.last().map_or(0.0, |piece| piece.end().position);
+        let first = self.run.piece(0).map(|piece| piece.link.step.at.clone());
+        self.hand_out_up_to(end, true, &way, joints, &Remarks::default(), out);
+        let text = "the robot stops on the way: its joints leave no motion that goes on at speed";
+        out.extend(first.map(|at| Planned { notices: vec![text.into()], ..Planned::part(&at) }));
+    }
+
+    /// Hands out the motion up to a place of the run; there it `rests`, or goes on.
+    fn hand_out_up_to(
+        &mut self,
+        end: f64,
+        rests: bool,
+        timing: &[TimingPiece],
+        joints: &mut PathJoints<'_, N, K>,
+        remarks: &Remarks,
+        out: &mut Vec<Planned<N>>,
+    ) {
+        let ends = self.run.ends_up_to(end);
+        let parts = cut::by_path(timing, &ends);
+        for (index, (part, &to)) in parts.iter().zip(&ends).enumerate() {
+            let last = index + 1 == ends.len();
+            let joints = joints.jet(to).map_or(self.joints, |jet| jet.position);
+            let part = Part { timing: part, rests: rests && last, joints };
             self.hand_out_part(&part, remarks.of(index), out);
         }
-        self.run.speed = speed;
-        Ok(true)
     }
 
     fn hand_out_part(&mut self, part: &Part<'_, N>, notices: &[String], out: &mut Vec<Planned<N>>) {
         let from_rest = self.run.speed == 0.0;
-        let Some(piece) = self.run.take_first(part.timing, part.whole, !notices.is_empty()) else { return };
+        let Some((piece, whole)) = self.run.take_first(part.timing, !notices.is_empty()) else { return };
         let begins = !piece.begun && matches!(piece.info.kind, SegmentKind::Path(_));
         let at = &piece.link.step.at;
         let mut planned = if begins { Planned::begin(&piece.link) } else { Planned::part(at) };
         planned.notices.extend(notices.iter().cloned());
-        if part.whole && matches!(piece.info.kind, SegmentKind::Path(_)) {
+        if whole && matches!(piece.info.kind, SegmentKind::Path(_)) {
             planned.notices.extend(self.other_configuration(&piece.link, &part.joints));
         }
         planned.commands = self.blocks(&piece, part.timing, from_rest, part.rests);
@@ -115,7 +132,8 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         out.push(planned);
         out.extend(piece.after.iter().map(Planned::of));
         self.joints = part.joints;
-        self.run.speed = part.timing.last().map_or(self.run.speed, |piece| piece.end().velocity);
+        let end = part.timing.last().map_or(self.run.speed, |piece| piece.end().velocity);
+        self.run.speed = if part.rests { 0.0 } else { end };
     }
 
     fn timing_limits(&self) -> TimingLimits<N> {

@@ -110,7 +110,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             Order::Jerk => "jerk",
         };
         let mut text = format!(
-            "slows from {:.1} to {:.1} {speed_unit} between {:.1} and {:.1} {unit} (least at {:.1} {unit}){}: \\
+            "slows from {:.1} to {:.1} {speed_unit} between {:.1} and {:.1} {unit} (least at {:.1} {unit}){}: \
              joint {} is at its {order} limit",
             speed * factor,
             slowdown.speed * factor,

@@ -17,6 +17,8 @@ use crate::record::{SegmentInfo, SegmentKind};
 const HORIZON: f64 = 1.0;
 /// A closed run that takes no longer than this many horizons is looked at whole.
 const WHOLE: f64 = 2.0;
+/// Two places of a path nearer than this are one: a nanometre.
+const SAME_PLACE: f64 = 1e-9;
 
 /// A move as programmed.
 #[derive(Debug, Clone)]
@@ -65,6 +67,8 @@ pub(super) struct Run<const N: usize> {
     pieces: VecDeque<Piece<N>>,
     /// Speed at its start, where there is no acceleration.
     pub(super) speed: f64,
+    /// How it would come to rest from there, as planned when less of it was known.
+    pub(super) way_to_rest: Vec<TimingPiece>,
 }
 
 /// Why a move cannot be run on to.
@@ -73,7 +77,7 @@ pub(super) struct Stops(pub(super) &'static str);
 
 impl<const N: usize> Default for Run<N> {
     fn default() -> Self {
-        Self { pieces: VecDeque::new(), speed: 0.0 }
+        Self { pieces: VecDeque::new(), speed: 0.0, way_to_rest: Vec::new() }
     }
 }
 
@@ -201,32 +205,42 @@ impl<const N: usize> Run<N> {
         (route, stretches)
     }
 
+    /// Where its paths end, up to a place.
+    pub(super) fn ends_up_to(&self, place: f64) -> Vec<f64> {
+        let mut ends = Vec::new();
+        let mut end = 0.0;
+        for piece in &self.pieces {
+            end += piece.path.length();
+            if end >= place {
+                break;
+            }
+            ends.push(end);
+        }
+        ends.push(place);
+        ends
+    }
+
     pub(super) fn piece(&self, index: usize) -> Option<&Piece<N>> {
         self.pieces.get(index)
     }
 
-    /// Takes the first piece with its timing: the whole of what is left of it, or as far as the timing goes.
-    pub(super) fn take_first(
-        &mut self,
-        timing: &[TimingPiece],
-        whole: bool,
-        slowed: bool,
-    ) -> Option<Piece<N>> {
+    /// Takes the first piece with its timing, and whether that is all that is left of it.
+    pub(super) fn take_first(&mut self, timing: &[TimingPiece], slowed: bool) -> Option<(Piece<N>, bool)> {
         let first = self.pieces.front_mut()?;
         first.slowed |= slowed;
         first.info.constant_part = first.constant_part(timing);
-        if whole {
-            return self.pieces.pop_front();
-        }
         let place = timing.last().map_or(0.0, |piece| piece.end().position);
         let length = first.path.length();
+        if place >= length - SAME_PLACE {
+            return self.pieces.pop_front().map(|piece| (piece, true));
+        }
         let mut taken = first.clone();
         taken.path = first.path.part(0.0, place);
         taken.after.clear();
         first.path = first.path.part(place, length);
         first.offset += place;
         first.begun = true;
-        Some(taken)
+        Some((taken, false))
     }
 
     /// Gives the run up: the steps that would have followed the piece with this number and its link.

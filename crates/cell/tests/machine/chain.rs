@@ -1,5 +1,7 @@
 //! Moves that run on into each other: planned as a run, executed by the cycle, judged by an independent arm model.
 
+use std::collections::HashMap;
+
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use seamline::control::{Command, Event, Mode};
 use seamline::kinematics::Kinematics;
@@ -9,7 +11,7 @@ use seamline_cell::job::{
 };
 use seamline_cell::plan::{Arm, Planned, Planner};
 
-use crate::bench::{Ar2010, Bench, independent_forward, independent_torch, move_to, worst_shares};
+use crate::bench::{Ar2010, Bench, Random, independent_forward, independent_torch, move_to, worst_shares};
 
 /// Joints in which the tool is at home in front of the robot.
 const HOME: [f64; 6] = [0.0, 0.2, -0.2, 0.1, -1.2, 0.3];
@@ -257,4 +259,67 @@ fn a_spline_passes_its_points() {
     }
     let speeds = trace.travelling(15.0);
     assert!(speeds.iter().all(|speed| (14.85..15.02).contains(speed)), "{speeds:?}");
+}
+
+/// Random runs: points 3 to 120 mm apart at any angle, 5 to 500 mm/s, every kind of zone, the tool turning by up to 10 degrees. Each is
+/// executed: the joints' limits hold, no corner is missed by more than is permitted, and no move is faster than programmed.
+fn random_runs(seed: u64, cases: usize) {
+    let mut random = Random(seed);
+    for case in 0..cases {
+        let (mut at, mut points) = ([0.0, 0.0], Vec::new());
+        for _ in 0..6 {
+            let (length, angle) = (3.0 * 40_f64.powf(random.unit()), random.within(-3.1, 3.1));
+            at = [at[0] + length * angle.cos(), at[1] + length * angle.sin()];
+            // Back towards the middle, where the arm has room.
+            at = at.map(|x: f64| if x.abs() > 120.0 { x * 0.5 } else { x });
+            points.push((at, random.within(-10.0, 10.0)));
+        }
+        let way = Way::new(&points);
+        let zones: Vec<Zone> = (0..6)
+            .map(|_| match random.within(0.0, 4.0) as u8 {
+                0 => Zone::Exact,
+                1 => Zone::Level(random.within(1.0, 8.99) as u8),
+                2 => Zone::CornerRadius { mm: random.within(1.0, 10.0) },
+                _ => Zone::Unspecified,
+            })
+            .collect();
+        let speeds: Vec<f64> = (0..6).map(|_| 5.0 * 100_f64.powf(random.unit())).collect();
+        let steps: Vec<Step> =
+            (0..6).map(|k| way.step(k + 1, MovePath::Linear, speeds[k], zones[k])).collect();
+        let parts = way.plan(&steps);
+        let trace = way.run(&parts);
+        for (k, zone) in zones.iter().enumerate() {
+            let permitted = match zone {
+                Zone::Exact => 0.0,
+                Zone::Level(level) => way.cell.job.position_levels[usize::from(*level)] * 1000.0,
+                Zone::CornerRadius { mm } => mm * (2_f64.sqrt() - 1.0),
+                Zone::Unspecified => way.cell.job.corner_error * 1000.0,
+            };
+            let error = trace.distance(&way.poses[k + 1]);
+            assert!(error <= permitted * 1.001 + 2e-3, "case {case}, point {k}: {error} of {permitted} mm");
+        }
+        let programmed: HashMap<u32, f64> = parts
+            .iter()
+            .filter_map(|part| part.segment)
+            .filter_map(|s| Some((s.segment, s.speed?)))
+            .collect();
+        for (k, speed) in trace.speeds().iter().enumerate() {
+            let pair = [trace.segments[k], trace.segments[k + 1]];
+            let most =
+                pair.iter().filter_map(|segment| programmed.get(segment)).fold(0.0, |a: f64, b| a.max(*b));
+            assert!(*speed <= most * 1001.0 + 1e-3, "case {case}, cycle {k}: {speed} mm/s of {most} m/s");
+        }
+    }
+}
+
+#[test]
+fn random_runs_keep_limits_errors_and_speeds() {
+    random_runs(7, 25);
+}
+
+/// As above, many: `cargo test --release -p seamline-cell --test machine many_random -- --ignored`.
+#[test]
+#[ignore = "takes minutes"]
+fn many_random_runs() {
+    random_runs(8, 2_000);
 }

@@ -9,24 +9,9 @@ use seamline_cell::job::{MovePath, Speed};
 use seamline_cell::plan::{Arm, Planner};
 use seamline_cell::sim::{Servo, SimulatedDrive};
 
-use crate::bench::{Ar2010, Bench, move_to, worst_shares};
-
-/// splitmix64.
-struct Random(u64);
+use crate::bench::{Ar2010, Bench, Random, move_to, worst_shares};
 
 impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
     /// Joints in the middle of the working range; every third time with the wrist nearly stretched.
     fn joints(&mut self, beside_wrist: bool) -> [f64; 6] {
         let wrist = if beside_wrist { self.within(-0.05, 0.05) } else { self.within(-1.4, -0.4) };
