@@ -11,6 +11,7 @@
 //! | [`kinematics`] | arm models: forward, inverse, Jacobian, joint derivatives along a path, singularities |
 //! | [`otg`] | the trajectory generator: any state to any state in the least time, jerk-limited, N axes |
 //! | [`path`] | lines and arcs with orientation, as functions of the path coordinate |
+//! | [`vibration`] | prefilters against a flexible mode; corners that keep their error under them |
 //!
 //! # Units and frames
 //! SI throughout: metre, radian, second. A pose is named by its two frames, and neighbouring frames cancel:
@@ -34,3 +35,4 @@ pub mod math;
 pub mod otg;
 pub mod path;
 pub mod safety;
+pub mod vibration;
