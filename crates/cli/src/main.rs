@@ -4,6 +4,7 @@
 
 mod commands;
 mod json_lines;
+mod plot;
 mod report;
 mod robot;
 
@@ -27,6 +28,9 @@ enum Command {
     Fk(commands::fk::Arguments),
     Ik(commands::ik::Arguments),
     Otg(commands::otg::Arguments),
+    Shaper(commands::shaper::Arguments),
+    Identify(commands::identify::Arguments),
+    Corner(commands::corner::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -37,6 +41,9 @@ fn main() -> ExitCode {
         Command::Fk(arguments) => commands::fk::run(&arguments),
         Command::Ik(arguments) => commands::ik::run(&arguments),
         Command::Otg(arguments) => commands::otg::run(&arguments),
+        Command::Shaper(arguments) => commands::shaper::run(&arguments),
+        Command::Identify(arguments) => commands::identify::run(&arguments),
+        Command::Corner(arguments) => commands::corner::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
