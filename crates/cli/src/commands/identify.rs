@@ -13,7 +13,8 @@ use crate::plot::{Chart, Page, Series};
 
 const HELP: &str = "\
 The file has rows of time_s, acceleration in any unit, evenly sampled; a first line of words is a header. It may begin
-before the vibration does, and should end while something is still to be seen.
+before the vibration does; nothing may push the arm after that. Prints the modes, strongest first: undamped natural
+frequency and damping ratio with their standard deviations, and the amplitude where the vibration begins.
 
 Example:
   seamline identify vibration.csv --plot vibration.html";

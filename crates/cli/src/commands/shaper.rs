@@ -161,7 +161,11 @@ fn page(answer: &Answer, mut facts: Vec<(String, String)>) -> Page {
     };
     let pairs = |x: &[f64], y: &[f64]| x.iter().copied().zip(y.iter().copied()).collect::<Vec<_>>();
     let tolerance = vec![(5.0, "5 %".to_owned())];
-    let percent = |y: &[f64]| y.iter().map(|v| 100.0 * v).collect::<Vec<_>>();
+    // A prefilter that changes nothing leaves 100 %, and would only flatten the others.
+    let percent = |shown: &Shown, y: &[f64]| -> Vec<f64> {
+        let changes = shown.length_s > 0.0;
+        y.iter().filter(|_| changes).map(|v| 100.0 * v).collect()
+    };
     let charts = vec![
         chart("A step through the prefilter", "time, s", "command", &|s| {
             pairs(&s.step.time_s, &s.step.command)
@@ -177,7 +181,7 @@ fn page(answer: &Answer, mut facts: Vec<(String, String)>) -> Page {
                 "Residual vibration, wrong frequency",
                 "actual over modelled frequency",
                 "vibration, %",
-                &|s| pairs(&s.sensitivity.ratio, &percent(&s.sensitivity.vibration_over_frequency)),
+                &|s| pairs(&s.sensitivity.ratio, &percent(s, &s.sensitivity.vibration_over_frequency)),
             )
         },
         Chart {
@@ -186,7 +190,7 @@ fn page(answer: &Answer, mut facts: Vec<(String, String)>) -> Page {
                 "Residual vibration, wrong damping",
                 "actual over modelled damping",
                 "vibration, %",
-                &|s| pairs(&s.sensitivity.ratio, &percent(&s.sensitivity.vibration_over_damping)),
+                &|s| pairs(&s.sensitivity.ratio, &percent(s, &s.sensitivity.vibration_over_damping)),
             )
         },
     ];

@@ -3,6 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Vector2, Vector3};
+use seamline::geometry::Pose;
+use seamline::path::Path;
 use seamline::vibration::{
     Corner, Kernel, Mode, Prefilter, Ramp, RampPiece, angle_between, reachable_feedrate, trapezoid_overlap,
 };
@@ -231,6 +233,25 @@ fn ramps_of_ones_own_serve_as_well() {
     };
     let found = corner.overlap(1e-3);
     assert!((sampled_error(&corner, found.delay, 100_000) - 1e-3).abs() < 1e-5, "{found:?}");
+}
+
+/// The document's test path, by its own tangents: an arc, then four lines.
+#[test]
+fn the_test_path_has_the_documents_angles() {
+    let pose = |x: f64, y: f64| Pose::translation(1e-3 * x, 1e-3 * y, 0.0);
+    let on_arc = |degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        pose(180.0 + 40.0 * cos, 40.0 + 40.0 * sin)
+    };
+    let corners =
+        [pose(140.0, 40.0), pose(275.0, 100.0), pose(410.0, 40.0), pose(360.0, 90.0), pose(270.0, 0.0)];
+    let mut segments = vec![Path::arc(&on_arc(-90.0), &on_arc(-135.0), &on_arc(180.0)).unwrap()];
+    segments.extend(corners.windows(2).map(|pair| Path::line(&pair[0], &pair[1])));
+    let printed = [66.038, 47.925, 158.963, 90.0];
+    for (pair, printed) in segments.windows(2).zip(printed) {
+        let angle = angle_between(&pair[0].jet(pair[0].length()).linear[0], &pair[1].jet(0.0).linear[0]);
+        assert!((angle.to_degrees() - printed).abs() < 6e-4, "{} {printed}", angle.to_degrees());
+    }
 }
 
 #[test]
