@@ -176,11 +176,15 @@ impl Ramp {
         Self::from_kernel(&Kernel::rectangle(duration)?)
     }
 
-    /// The generator's ramp to a feedrate under limits of acceleration and jerk: constant jerk, acceleration, and jerk again.
+    /// The generator's ramp to a feedrate under limits of acceleration and jerk: constant jerk, acceleration, and jerk again. An infinite jerk
+    /// makes it a trapezoid.
     ///
     /// # Errors
     /// An argument that is not positive.
     pub fn s_curve(feedrate: f64, acceleration: f64, jerk: f64) -> Result<Self, RampError> {
+        if jerk == f64::INFINITY {
+            return Self::trapezoid(feedrate / acceleration);
+        }
         let (mut whole, mut rise) = (feedrate / acceleration, acceleration / jerk);
         if rise > whole {
             // The acceleration limit is not reached.

@@ -25,7 +25,8 @@ const MAX_TAPS: usize = 2 * MAX_IMPULSES;
 
 /// A prefilter on `N` axes, with room for kernels of up to `RING − 1` cycles; `RING` is a power of two.
 ///
-/// The kernel has one rectangle at most; several modes with FIR take one stage each, one after the other.
+/// The kernel has one rectangle at most; several modes with FIR take one stage each, one after the other. Commands are finite numbers: another
+/// one would stay inside until [`PrefilterStage::reset`].
 #[derive(Debug, Clone)]
 pub struct PrefilterStage<const N: usize, const RING: usize> {
     ring: [Entry<N>; RING],

@@ -1,5 +1,6 @@
 //! Each prefilter against a simulated mode: the oscillator is integrated, the step through the kernel averaged numerically.
 
+use seamline::otg::{Control, Input, Limits, State, calculate};
 use seamline::vibration::{
     Impulse, Kernel, KernelError, MAX_IMPULSES, MAX_RECTANGLES, Mode, Prefilter, Ramp, RampError, RampPiece,
 };
@@ -90,6 +91,26 @@ fn the_response_of_a_mode_is_that_of_the_simulated_oscillator() {
             assert!((ours - residual).abs() < 2e-3, "{prefilter}: {ours} {residual}");
         }
     }
+}
+
+#[test]
+fn an_s_curve_is_the_generators() {
+    for (feedrate, acceleration, jerk) in [(0.2, 1.0, 10.0), (0.2, 1.0, 3.0), (0.3, 2.0, f64::INFINITY)] {
+        let ramp = Ramp::s_curve(feedrate, acceleration, jerk).unwrap();
+        let limits = Limits::symmetric([1.0], [acceleration], [jerk]);
+        let target = State { velocity: [feedrate], ..State::default() };
+        let mut input = Input::new(State::default(), target, limits);
+        input.control = [Control::Velocity];
+        let generated = calculate(&input).unwrap();
+        assert!((ramp.duration() - generated.duration()).abs() < 1e-12);
+        for n in 0..=40 {
+            let time = f64::from(n) / 40.0 * ramp.duration();
+            let sample = generated.at_time(time);
+            assert!((feedrate * ramp.value(time) - sample.velocity[0]).abs() < 1e-12, "{time}");
+            assert!((feedrate * ramp.integral(time) - sample.position[0]).abs() < 1e-12, "{time}");
+        }
+    }
+    assert!(Ramp::s_curve(0.0, 1.0, 1.0).is_err());
 }
 
 #[test]
