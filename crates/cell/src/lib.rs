@@ -3,6 +3,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`cell`] | the cell file: robot, limits, tools, conditions, simulation |
+//! | [`experiment`] | the SCARA experiment: a flexible tool on a path with corners |
 //! | [`identify`] | flexible modes from a measured vibration |
 //! | [`job`] | INFORM job files: reader, checks, interpreter |
 //! | [`plan`] | from steps to blocks; the speed along a path that keeps every joint limit |
@@ -12,6 +13,7 @@
 //! | [`sim`] | simulated servo drives |
 
 pub mod cell;
+pub mod experiment;
 pub mod identify;
 pub mod job;
 pub mod plan;
