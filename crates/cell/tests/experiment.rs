@@ -6,13 +6,10 @@ use std::f64::consts::TAU;
 
 use seamline::path::Path;
 use seamline::vibration::{Mode, Prefilter};
-use seamline_cell::experiment::{Run, Setup, run, test_path};
+use seamline_cell::experiment::{ExperimentError, PREFILTERS, Run, Setup, run, scara, test_path};
 use seamline_cell::identify::identify;
 
 const G: f64 = 9.80665;
-const SHOWN: [Prefilter; 6] =
-    [Prefilter::None, Prefilter::Zv, Prefilter::Zvd, Prefilter::Fir, Prefilter::FirZv, Prefilter::FirZvd];
-
 fn mode(frequency: f64) -> Mode {
     Mode::try_new(TAU * frequency, 0.022).unwrap()
 }
@@ -22,7 +19,9 @@ fn setup(frequency: f64) -> Setup {
 }
 
 fn runs(frequency: f64, path: &[Path], permitted: f64) -> Vec<Run> {
-    SHOWN.map(|prefilter| run(&setup(frequency), path, prefilter, &mode(6.34), permitted).unwrap()).to_vec()
+    PREFILTERS
+        .map(|prefilter| run(&setup(frequency), path, prefilter, &mode(6.34), permitted).unwrap())
+        .to_vec()
 }
 
 #[test]
@@ -46,7 +45,7 @@ fn the_figures_of_the_exact_model() {
         [[1.26, 0.345, 0.194, f64::NAN, 0.128, 0.108], [1.26, 0.337, 0.194, f64::NAN, 0.128, 0.108]];
     for (permitted, expected) in [0.0, 500e-6].into_iter().zip(expected) {
         let runs = runs(6.34, &path, permitted);
-        for ((run, prefilter), expected) in runs.iter().zip(SHOWN).zip(expected) {
+        for ((run, prefilter), expected) in runs.iter().zip(PREFILTERS).zip(expected) {
             let max = run.acceleration_max / G;
             println!(
                 "{permitted} {prefilter}: max {max:.4} g, rms {:.4} g, residual {:.5}, time {:.3} s",
@@ -82,9 +81,28 @@ fn a_plant_that_has_drifted_still_keeps_quiet() {
 #[test]
 fn the_bare_run_tells_the_mode() {
     let run = run(&setup(6.34), &test_path().unwrap(), Prefilter::None, &mode(6.34), 0.0).unwrap();
-    let found = identify(&run.residual).unwrap().modes[0];
+    let found = identify(&run.residual()).unwrap().modes[0];
     assert!(
         (found.frequency_hz / 6.34 - 1.0).abs() < 1e-4 && (found.damping / 0.022 - 1.0).abs() < 1e-3,
         "{found:?}"
     );
+}
+
+#[test]
+fn the_experiment_whole() {
+    let outcome = scara(0.0).unwrap();
+    let found = outcome.identified;
+    assert!(
+        (found.frequency_hz / 6.34 - 1.0).abs() < 2e-3 && (found.damping / 0.022 - 1.0).abs() < 0.05,
+        "{found:?}"
+    );
+    assert_eq!(outcome.runs.len(), 12);
+    for scara_run in outcome.runs.iter().filter(|scara_run| scara_run.prefilter == Prefilter::FirZvd) {
+        let (best, bare) = (&scara_run.run, outcome.bare(scara_run.permitted).unwrap());
+        assert!(1.0 - best.acceleration_max / bare.acceleration_max >= 0.8569);
+        assert!(1.0 - best.acceleration_rms / bare.acceleration_rms >= 0.8512);
+        assert!(best.residual_max / bare.residual_max <= 0.005);
+    }
+    assert_eq!(scara(0.0).unwrap(), outcome);
+    assert!(matches!(scara(-1.0), Err(ExperimentError::Mode(_))));
 }

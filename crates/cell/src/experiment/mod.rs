@@ -4,18 +4,27 @@
 //! | module | holds |
 //! |---|---|
 //! | `blend` | segments that overlap in time: where the tool is commanded to be |
+//! | `error` | why there is no run |
+//! | `noise` | what an accelerometer adds |
 //! | `plant` | a flexible tool that follows the command |
+//! | `scara` | the experiment whole: identification, then a run for each prefilter and corner error |
 
 mod blend;
+mod error;
+mod noise;
 mod plant;
+mod scara;
 
 use nalgebra::Vector3;
 use seamline::geometry::Pose;
+use seamline::kinematics::{Kinematics, models};
 use seamline::path::{ArcError, Path};
-use seamline::vibration::{KernelError, Mode, Prefilter, Ramp, RampError};
+use seamline::vibration::{Mode, Prefilter, Ramp};
 
 pub use blend::{Blend, PlannedCorner};
+pub use error::ExperimentError;
 pub use plant::Plant;
+pub use scara::{CORNER_ERRORS, Outcome, PREFILTERS, ScaraRun, scara};
 
 use crate::identify::Signal;
 
@@ -45,8 +54,29 @@ pub struct Run {
     pub residual_max: f64,
     /// The corners as planned, with the error that the curved path has.
     pub corners: Vec<PlannedCorner>,
+    /// Every cycle.
+    pub trace: Vec<Sample>,
+}
+
+/// The tool at one cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// In seconds.
+    pub time: f64,
+    /// Where the arm is commanded to be, in metres.
+    pub command: Vector3<f64>,
+    /// How the tool accelerates, in m/s².
+    pub acceleration: Vector3<f64>,
+}
+
+impl Run {
     /// Acceleration in x after the last command: what an accelerometer sees but for its noise.
-    pub residual: Signal,
+    #[must_use]
+    pub fn residual(&self) -> Signal {
+        let after = self.trace.iter().filter(|sample| sample.time > self.path_time);
+        let (times, values) = after.map(|sample| (sample.time, sample.acceleration.x)).unzip();
+        Signal { times, values }
+    }
 }
 
 /// The document's test path: a quarter of a circle and four lines, with changes of direction of 66.038, 47.925, 158.963 and 90 degrees.
@@ -66,48 +96,53 @@ pub fn test_path() -> Result<Vec<Path>, ArcError> {
 
 /// Runs a path with a prefilter made for the modelled mode, on a plant that may differ from it.
 ///
+/// The arm is the SCARA of 325 mm and 275 mm links; each command passes through its joints.
+///
 /// # Errors
-/// A kernel or ramp with too many pieces: none for one mode.
+/// [`ExperimentError`]: a path out of the arm's reach.
 pub fn run(
     setup: &Setup,
     path: &[Path],
     prefilter: Prefilter,
     modelled: &Mode,
     permitted: f64,
-) -> Result<Run, RampError> {
-    let kernel = prefilter.kernel(modelled).map_err(|error: KernelError| RampError::from(error))?;
-    let ramp = Ramp::from_kernel(&kernel)?;
+) -> Result<Run, ExperimentError> {
+    let ramp = Ramp::from_kernel(&prefilter.kernel(modelled)?)?;
     let blend = Blend::plan(path, &ramp, setup.feedrate, permitted);
-    Ok(simulate(setup, &blend))
+    let trace = simulate(setup, &blend)?;
+    Ok(figures(&blend, trace))
 }
 
-fn simulate(setup: &Setup, blend: &Blend<'_>) -> Run {
-    let path_time = blend.duration();
-    let cycles = ((path_time + setup.watched) / setup.period).ceil() as u64;
+fn simulate(setup: &Setup, blend: &Blend<'_>) -> Result<Vec<Sample>, ExperimentError> {
+    let cycles = ((blend.duration() + setup.watched) / setup.period).ceil() as u64;
+    let arm = models::scara600();
+    let mut joints = [0.0; 4];
+    let down = arm.forward(&joints).rotation;
     let mut plant = Plant::at_rest(setup.plant, blend.position(0.0));
-    let (mut acceleration_max, mut residual_max) = (0.0_f64, 0.0_f64);
-    let (mut squares, mut moving) = (0.0, 0.0_f64);
-    let mut residual = Signal { times: Vec::new(), values: Vec::new() };
+    let mut trace = Vec::with_capacity(cycles as usize);
     for cycle in 1..=cycles {
         let time = setup.period * cycle as f64;
-        let acceleration: Vector3<f64> = plant.step(blend.position(time), setup.period);
-        let size = acceleration.norm();
-        acceleration_max = acceleration_max.max(size);
-        if time <= path_time {
-            squares += size * size;
-            moving += 1.0;
-        } else {
-            residual_max = residual_max.max(size);
-            residual.times.push(time);
-            residual.values.push(acceleration.x);
-        }
+        let pose = Pose::from_parts(blend.position(time).into(), down);
+        joints =
+            arm.inverse_nearest(&pose, &joints).map_err(|error| ExperimentError::Reach { time, error })?;
+        let command = arm.forward(&joints).translation.vector;
+        let acceleration = plant.step(command, setup.period);
+        trace.push(Sample { time, command, acceleration });
     }
+    Ok(trace)
+}
+
+fn figures(blend: &Blend<'_>, trace: Vec<Sample>) -> Run {
+    let path_time = blend.duration();
+    let greatest = |samples: &[Sample]| samples.iter().map(|s| s.acceleration.norm()).fold(0.0, f64::max);
+    let (moving, after) = trace.split_at(trace.partition_point(|sample| sample.time <= path_time));
+    let squares: f64 = moving.iter().map(|s| s.acceleration.norm_squared()).sum();
     Run {
         path_time,
-        acceleration_max,
-        acceleration_rms: (squares / moving.max(1.0)).sqrt(),
-        residual_max,
+        acceleration_max: greatest(&trace),
+        acceleration_rms: (squares / moving.len().max(1) as f64).sqrt(),
+        residual_max: greatest(after),
         corners: blend.corners().to_vec(),
-        residual,
+        trace,
     }
 }
