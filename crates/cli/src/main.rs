@@ -31,6 +31,7 @@ enum Command {
     Shaper(commands::shaper::Arguments),
     Identify(commands::identify::Arguments),
     Corner(commands::corner::Arguments),
+    Experiment(commands::experiment::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
         Command::Shaper(arguments) => commands::shaper::run(&arguments),
         Command::Identify(arguments) => commands::identify::run(&arguments),
         Command::Corner(arguments) => commands::corner::run(&arguments),
+        Command::Experiment(arguments) => commands::experiment::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

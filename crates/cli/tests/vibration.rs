@@ -1,4 +1,4 @@
-//! `shaper`, `identify` and `corner` as a user meets them.
+//! `shaper`, `identify`, `corner` and `experiment` as a user meets them.
 
 #![allow(clippy::expect_used, reason = "a failing test says what it missed")]
 
@@ -187,9 +187,34 @@ fn wrong_arguments_are_usage() {
     assert!(status == Some(1) && message.contains("impulses"), "{message}");
 }
 
+/// What the document asks of FIR-ZVD, also where the plant's frequency has drifted by 15 % since the identification.
+#[test]
+fn the_scara_experiment_keeps_its_figures() {
+    let page = file("scara.html");
+    for (drift, reduction, residual) in [("0", 85.12, 0.5), ("-15", 85.0, 1.5), ("15", 85.0, 1.5)] {
+        let found =
+            answer(&format!("experiment scara --json --plant-drift-pct {drift} --plot {}", page.display()));
+        assert!((number(&found["identified"]["frequency_hz"]) / 6.34 - 1.0).abs() < 2e-3, "{found}");
+        let runs = found["runs"].as_array().expect("runs");
+        assert_eq!(runs.len(), 12);
+        for run in runs.iter().filter(|run| run["prefilter"] == "FIR-ZVD") {
+            assert!(number(&run["reduction_max_pct"]) >= reduction, "{run}");
+            assert!(number(&run["residual_pct"]) <= residual, "{run}");
+            let errors = numbers(&run["corner_errors_mm"]);
+            let wanted = if number(&run["error_um"]) > 0.0 { 0.495..=0.5 } else { 0.0..=1e-3 };
+            assert!(errors.len() == 4 && errors.iter().all(|error| wanted.contains(error)), "{run}");
+        }
+        is_page(&page, &["SCARA experiment", "Feedrate", "158.96"]);
+    }
+    let table = seamline("experiment scara");
+    let text = String::from_utf8_lossy(&table.stdout).into_owned();
+    assert!(table.status.success() && text.lines().count() == 19 && text.contains("FIR-ZVD"), "{text}");
+    assert_eq!(refused("experiment scara --plant-drift-pct -100").0, Some(2));
+}
+
 #[test]
 fn help_has_an_example() {
-    for command in ["shaper", "identify", "corner"] {
+    for command in ["shaper", "identify", "corner", "experiment", "experiment scara"] {
         let output = seamline(&format!("{command} --help"));
         assert!(output.status.success() && String::from_utf8_lossy(&output.stdout).contains("Example:"));
     }

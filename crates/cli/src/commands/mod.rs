@@ -3,6 +3,7 @@
 pub(crate) mod cell;
 pub(crate) mod check;
 pub(crate) mod corner;
+pub(crate) mod experiment;
 pub(crate) mod fk;
 pub(crate) mod identify;
 pub(crate) mod ik;
