@@ -56,7 +56,7 @@ impl Corner<'_> {
     /// The longest overlap whose corner error is at most the permitted one, in metres.
     ///
     /// An error of zero or less gives no overlap. Where even the longest overlap stays below the error, that is the answer. Costs
-    /// about 2 µs.
+    /// 0.4 to 4 µs with the prefilters of the table.
     #[must_use]
     pub fn overlap(&self, permitted: f64) -> Overlap {
         let longest = self.deceleration.duration().min(self.longest.max(0.0));
