@@ -3,6 +3,8 @@
 //! | module | holds |
 //! |---|---|
 //! | [`cell`] | the cell file: robot, limits, tools, conditions, simulation |
+//! | [`experiment`] | the SCARA experiment: a flexible tool on a path with corners |
+//! | [`identify`] | flexible modes from a measured vibration |
 //! | [`job`] | INFORM job files: reader, checks, interpreter |
 //! | [`plan`] | from steps to blocks; the speed along a path that keeps every joint limit |
 //! | [`record`] | what a run leaves behind: recording, figures, data for plots |
@@ -11,6 +13,8 @@
 //! | [`sim`] | simulated servo drives |
 
 pub mod cell;
+pub mod experiment;
+pub mod identify;
 pub mod job;
 pub mod plan;
 pub mod record;

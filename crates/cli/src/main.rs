@@ -4,6 +4,7 @@
 
 mod commands;
 mod json_lines;
+mod plot;
 mod report;
 mod robot;
 
@@ -28,6 +29,10 @@ enum Command {
     Ik(commands::ik::Arguments),
     Otg(commands::otg::Arguments),
     Profile(commands::profile::Arguments),
+    Shaper(commands::shaper::Arguments),
+    Identify(commands::identify::Arguments),
+    Corner(commands::corner::Arguments),
+    Experiment(commands::experiment::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -39,6 +44,10 @@ fn main() -> ExitCode {
         Command::Ik(arguments) => commands::ik::run(&arguments),
         Command::Otg(arguments) => commands::otg::run(&arguments),
         Command::Profile(arguments) => commands::profile::run(&arguments),
+        Command::Shaper(arguments) => commands::shaper::run(&arguments),
+        Command::Identify(arguments) => commands::identify::run(&arguments),
+        Command::Corner(arguments) => commands::corner::run(&arguments),
+        Command::Experiment(arguments) => commands::experiment::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

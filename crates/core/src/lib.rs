@@ -12,6 +12,7 @@
 //! | [`otg`] | the trajectory generator: any state to any state in the least time, jerk-limited, N axes |
 //! | [`path`] | lines, arcs, blends and splines with orientation, as functions of the path coordinate; corners |
 //! | [`timed`] | motion of third order in a given time, and what a new target does to it |
+//! | [`vibration`] | prefilters against a flexible mode; corners that keep their error under them |
 //!
 //! # Units and frames
 //! SI throughout: metre, radian, second. A pose is named by its two frames, and neighbouring frames cancel:
@@ -36,3 +37,4 @@ pub mod otg;
 pub mod path;
 pub mod safety;
 pub mod timed;
+pub mod vibration;

@@ -1,0 +1,154 @@
+//! Segments that overlap in time: each is a rectangular pulse of feedrate through a prefilter, and their ways add up.
+
+use nalgebra::Vector3;
+use seamline::path::Path;
+use seamline::vibration::{Corner, Overlap, Ramp, angle_between, reachable_feedrate};
+
+/// The corner error is used to this fraction: curvature is met by iteration.
+const CLOSE: f64 = 1e-4;
+/// Bound of that iteration; two or three steps are usual.
+const STEPS: usize = 30;
+/// Bound of the search for the nearest point: thirds of the overlap, 100 times.
+const THIRDS: usize = 100;
+
+/// A path whose segments overlap at their corners.
+#[derive(Debug)]
+pub struct Blend<'a> {
+    segments: Vec<Segment<'a>>,
+    corners: Vec<PlannedCorner>,
+}
+
+/// A corner between two segments.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlannedCorner {
+    /// Change of direction, in radians.
+    pub angle: f64,
+    /// The overlap; times count from where the first segment begins to decelerate.
+    pub overlap: Overlap,
+    /// Least distance of the commanded path from the corner, curvature and all, in metres.
+    pub error: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Segment<'a> {
+    path: &'a Path,
+    ramp: &'a Ramp,
+    feedrate: f64,
+    start: f64,
+}
+
+impl Segment<'_> {
+    /// When it begins to decelerate.
+    fn deceleration(&self) -> f64 {
+        self.start + self.path.length() / self.feedrate
+    }
+
+    /// From the segment's start to where the tool is on it.
+    fn way(&self, time: f64) -> Vector3<f64> {
+        let from_start = time - self.start;
+        let from_deceleration = time - self.deceleration();
+        let s = if from_deceleration >= 0.0 {
+            self.path.length() - self.feedrate * self.ramp.remaining(from_deceleration)
+        } else {
+            self.feedrate * self.ramp.integral(from_start)
+        };
+        let at = |s: f64| self.path.pose(s).translation.vector;
+        at(s.clamp(0.0, self.path.length())) - at(0.0)
+    }
+}
+
+impl<'a> Blend<'a> {
+    /// Plans the corners of a path, each with the permitted error in metres. Feedrates are lowered where a segment is too short.
+    #[must_use]
+    pub fn plan(path: &'a [Path], ramp: &'a Ramp, feedrate: f64, permitted: f64) -> Self {
+        let mut segments: Vec<Segment<'a>> = Vec::with_capacity(path.len());
+        let mut corners = Vec::new();
+        for piece in path {
+            let feedrate = reachable_feedrate(piece.length(), ramp, ramp, feedrate);
+            let mut segment = Segment { path: piece, ramp, feedrate, start: 0.0 };
+            if let Some(before) = segments.last() {
+                let corner = plan_corner(before, &segment, permitted);
+                segment.start = before.deceleration() + corner.overlap.delay;
+                corners.push(corner);
+            }
+            segments.push(segment);
+        }
+        Self { segments, corners }
+    }
+
+    /// When the last segment comes to rest, in seconds.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.segments.last().map_or(0.0, |last| last.deceleration() + last.ramp.duration())
+    }
+
+    /// The commanded position at a time.
+    #[must_use]
+    pub fn position(&self, time: f64) -> Vector3<f64> {
+        let start = self
+            .segments
+            .first()
+            .map_or_else(Vector3::zeros, |first| first.path.pose(0.0).translation.vector);
+        self.segments
+            .iter()
+            .take_while(|segment| segment.start <= time)
+            .fold(start, |at, segment| at + segment.way(time))
+    }
+
+    /// The corners, in the order of the path.
+    #[must_use]
+    pub fn corners(&self) -> &[PlannedCorner] {
+        &self.corners
+    }
+}
+
+/// The tangents give the overlap; where a segment is curved, the permitted error is scaled until the path itself has it.
+fn plan_corner(first: &Segment<'_>, second: &Segment<'_>, permitted: f64) -> PlannedCorner {
+    let before = first.path.jet(first.path.length()).linear[0];
+    let after = second.path.jet(0.0).linear[0];
+    let angle = angle_between(&before, &after);
+    let corner = Corner {
+        deceleration: first.ramp,
+        acceleration: second.ramp,
+        first_feedrate: first.feedrate,
+        second_feedrate: second.feedrate,
+        angle,
+        longest: f64::INFINITY,
+    };
+    let aim = permitted * (1.0 - 0.5 * CLOSE);
+    let mut asked = aim;
+    let mut best = PlannedCorner { angle, overlap: corner.at(0.0), error: 0.0 };
+    for _ in 0..STEPS {
+        let overlap = corner.overlap(asked);
+        let error = distance(first, second, &overlap);
+        if error <= permitted && overlap.overlap >= best.overlap.overlap {
+            best = PlannedCorner { angle, overlap, error };
+        }
+        let whole = overlap.overlap >= overlap.deceleration && error <= permitted;
+        if whole || error <= 0.0 || (error - aim).abs() <= 0.5 * CLOSE * permitted {
+            break;
+        }
+        asked *= aim / error;
+    }
+    best
+}
+
+/// Least distance of the overlapping segments from their corner.
+fn distance(first: &Segment<'_>, second: &Segment<'_>, overlap: &Overlap) -> f64 {
+    let first = Segment { start: 0.0, ..*first };
+    let begin = first.deceleration();
+    let second = Segment { start: begin + overlap.delay, ..*second };
+    let whole =
+        first.path.pose(first.path.length()).translation.vector - first.path.pose(0.0).translation.vector;
+    let at = |time: f64| (first.way(time) + second.way(time) - whole).norm();
+    let (mut low, mut high) = (begin + overlap.delay, begin + overlap.deceleration);
+    for _ in 0..THIRDS {
+        let third = (high - low) / 3.0;
+        if at(low + third) < at(high - third) {
+            high -= third;
+        } else {
+            low += third;
+        }
+    }
+    at(0.5 * (low + high))
+}
