@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use seamline::control::Mode;
 use seamline::geometry::{Pose, Vector3};
+use seamline::kinematics::JointKind;
 use seamline::path::Path;
 use seamline_cell::record::{Acceptance, JointInfo, Recorder, RunInfo, Sample, SegmentInfo, SegmentKind};
 
@@ -14,6 +15,7 @@ const ROWS: u32 = 2_000_000;
 fn main() -> std::io::Result<()> {
     let joint = |index: usize| JointInfo {
         name: format!("J{}", index + 1),
+        kind: JointKind::Revolute,
         position: [-3.0, 3.0],
         velocity: 4.0,
         acceleration: 20.0,

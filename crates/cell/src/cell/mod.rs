@@ -45,6 +45,10 @@ use section::Section;
 /// The embedded default cell: a complete, commented file to copy from.
 pub const DEFAULT_CELL_TOML: &str = include_str!("default.toml");
 
+/// The cells that come with the program, by name. The first is the default; the others are laid over it.
+pub const BUILT_IN_CELLS: [(&str, &str); 2] =
+    [("default", DEFAULT_CELL_TOML), ("scara", include_str!("scara.toml"))];
+
 /// A robot and its surroundings, checked. SI throughout.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
@@ -89,6 +93,15 @@ impl Cell {
     /// Only if [`DEFAULT_CELL_TOML`] were wrong, which a test excludes.
     pub fn default_cell() -> Result<Self, CellError> {
         Self::parse("", "default cell")
+    }
+
+    /// A cell that comes with the program; `None` where none has this name.
+    ///
+    /// # Errors
+    /// Only if a cell of [`BUILT_IN_CELLS`] were wrong, which a test excludes.
+    pub fn built_in(name: &str) -> Option<Result<Self, CellError>> {
+        let (name, text) = BUILT_IN_CELLS.iter().find(|(known, _)| *known == name)?;
+        Some(Self::parse(text, &format!("cell {name}")))
     }
 
     /// Reads a cell file.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-pub use seamline::kinematics::{DhConvention, OpwParameters};
+pub use seamline::kinematics::{DhConvention, JointKind, OpwParameters};
 
 use super::error::CellError;
 use super::section::{Section, Unit};
@@ -93,21 +93,12 @@ pub struct UrdfSource {
     pub tip_link: Option<String>,
 }
 
-/// Turning or sliding.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum JointKind {
-    /// Coordinate in radians.
-    Revolute,
-    /// Coordinate in metres.
-    Prismatic,
-}
-
 /// One joint. Radians or metres by its kind, and seconds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
     /// The maker's letter or name, such as `S`.
     pub name: String,
-    /// Turning or sliding.
+    /// Turning (coordinate in radians) or sliding (in metres).
     pub kind: JointKind,
     /// Lower end of the mechanical range.
     pub position_min: f64,

@@ -236,24 +236,24 @@ pub struct JobPosition {
     pub tool: u32,
 }
 
-/// Joint angles in radians from pulses.
+/// Joint positions in radians, or metres where a joint slides, from pulses.
 ///
-/// `pulses_per_degree` is signed: a negative value turns the axis around. `None` where there are fewer pulses
+/// `pulses_per_unit` is signed: a negative value turns the axis around. `None` where there are fewer pulses
 /// than axes; further pulses belong to other axes and are left out.
 #[must_use]
-pub fn joints_from_pulses<const N: usize>(pulses: &[i32], pulses_per_degree: &[f64; N]) -> Option<[f64; N]> {
+pub fn joints_from_pulses<const N: usize>(pulses: &[i32], pulses_per_unit: &[f64; N]) -> Option<[f64; N]> {
     let mut joints = [0.0; N];
-    for (joint, (axis, per_degree)) in joints.iter_mut().zip(pulses_per_degree.iter().enumerate()) {
-        *joint = (f64::from(*pulses.get(axis)?) / per_degree).to_radians();
+    for (joint, (axis, per_unit)) in joints.iter_mut().zip(pulses_per_unit.iter().enumerate()) {
+        *joint = f64::from(*pulses.get(axis)?) / per_unit;
     }
     Some(joints)
 }
 
-/// Pulses, to the nearest, from joint angles in radians: the inverse of [`joints_from_pulses`].
+/// Pulses, to the nearest, from joint positions: the inverse of [`joints_from_pulses`].
 #[must_use]
-pub fn pulses_from_joints<const N: usize>(joints: &[f64; N], pulses_per_degree: &[f64; N]) -> Vec<i32> {
+pub fn pulses_from_joints<const N: usize>(joints: &[f64; N], pulses_per_unit: &[f64; N]) -> Vec<i32> {
     // A cast from float to integer saturates at i32's ends.
-    joints.iter().zip(pulses_per_degree).map(|(q, k)| (q.to_degrees() * k).round() as i32).collect()
+    joints.iter().zip(pulses_per_unit).map(|(q, k)| (q * k).round() as i32).collect()
 }
 
 #[cfg(test)]
@@ -262,12 +262,12 @@ mod tests {
 
     #[test]
     fn pulses_turn_to_radians_and_back() {
-        let per_degree = [1341.380023, -1907.674052];
-        let joints = joints_from_pulses(&[-49_439, 115_900, 7], &per_degree).unwrap();
+        let per_radian = [1341.380023, -1907.674052].map(f64::to_degrees);
+        let joints = joints_from_pulses(&[-49_439, 115_900, 7], &per_radian).unwrap();
         assert!((joints[0].to_degrees() + 36.856_818).abs() < 1e-6);
         assert!((joints[1].to_degrees() + 60.754_614).abs() < 1e-6);
-        assert_eq!(pulses_from_joints(&joints, &per_degree), [-49_439, 115_900]);
-        assert_eq!(joints_from_pulses(&[1], &per_degree), None);
+        assert_eq!(pulses_from_joints(&joints, &per_radian), [-49_439, 115_900]);
+        assert_eq!(joints_from_pulses(&[1], &per_radian), None);
     }
 
     #[test]

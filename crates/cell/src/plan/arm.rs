@@ -1,17 +1,24 @@
 //! The arm of a cell, ready for planning and running.
 
-use seamline::geometry::Pose;
-use seamline::kinematics::{
-    ClosedForm, Configuration, InverseError, InverseMethod, Kinematics, SixAxisArm, SphericalWristArm,
-};
+mod scara;
+mod six_axis;
+
+use seamline::geometry::{Pose, Rotation};
+use seamline::kinematics::{InverseError, JointKind, Kinematics, ScaraArm, SixAxisArm};
 use seamline::safety::MotionLimits;
 
-use crate::cell::{Cell, Robot};
+use crate::cell::{Cell, Joint, Robot};
 use crate::job;
-use crate::robot::{ArmDescription, ArmError};
+use crate::robot::{ArmDescription, ArmError, JointUnit};
 
 /// What planning asks of an arm beyond what the cycle does.
 pub trait PlanningArm<const N: usize>: Kinematics<N> + Clone {
+    /// The arm that a description is about.
+    ///
+    /// # Errors
+    /// [`ArmError`] where that is no such arm.
+    fn from_description(description: &ArmDescription) -> Result<Self, ArmError>;
+
     /// The joints that reach a flange pose in a configuration.
     ///
     /// # Errors
@@ -32,49 +39,16 @@ pub trait PlanningArm<const N: usize>: Kinematics<N> + Clone {
 
     /// The configuration of joint positions.
     fn configuration(&self, q: &[f64; N]) -> job::Configuration;
-}
 
-impl PlanningArm<6> for SixAxisArm {
-    fn in_configuration(
-        &self,
-        base_from_flange: &Pose,
-        configuration: &job::Configuration,
-        reference: &[f64; 6],
-    ) -> Result<[f64; 6], InverseError> {
-        let c = configuration;
-        let digits =
-            [c.no_flip, c.lower_arm, c.rear, c.r_beyond_180, c.t_beyond_180, c.s_beyond_180].map(u8::from);
-        match (spherical_wrist(self), Configuration::from_rconf(digits)) {
-            (Some(arm), Some(configuration)) => {
-                arm.inverse_in_configuration(base_from_flange, &configuration, reference)
-            }
-            // The flags name the branches of a spherical wrist; another arm goes to the nearest joints.
-            _ => self.inverse_nearest(base_from_flange, reference),
-        }
+    /// The orientation of the flange that the arm can take, where one that it cannot take differs by the rounding of a job's
+    /// digits only; any other orientation as it is. An arm that turns about three axes takes all of them.
+    fn taken_orientation(&self, base_from_flange: &Rotation) -> Rotation {
+        *base_from_flange
     }
 
-    fn same_branch(&self, base_from_flange: &Pose, seed: &[f64; 6]) -> Result<[f64; 6], InverseError> {
-        let Some(arm) = spherical_wrist(self) else { return self.inverse_nearest(base_from_flange, seed) };
-        let posture = arm.posture(seed);
-        let all = arm.inverse_within_limits(base_from_flange, seed)?;
-        let same =
-            all.as_slice().iter().find(|solution| solution.posture == posture || solution.at_wrist_pole);
-        // The branch ends here, or leaves the limits: the nearest joints show by how much the arm would have to jump.
-        same.map_or_else(|| self.inverse_nearest(base_from_flange, seed), |solution| Ok(solution.q))
-    }
-
-    fn configuration(&self, q: &[f64; 6]) -> job::Configuration {
-        let Some(arm) = spherical_wrist(self) else { return job::Configuration::default() };
-        let flags = arm.configuration(q).to_rconf().map(|digit| digit == 1);
-        job::Configuration::from_flags(&flags)
-    }
-}
-
-/// The closed form whose branches have the names of `RCONF`.
-fn spherical_wrist(arm: &SixAxisArm) -> Option<&SphericalWristArm> {
-    match arm.method() {
-        InverseMethod::Exact(ClosedForm::SphericalWrist(arm)) => Some(arm),
-        _ => None,
+    /// Why there are no joints, where this arm has better words for it than arms have in general.
+    fn in_own_words(&self, _error: &InverseError) -> Option<String> {
+        None
     }
 }
 
@@ -85,53 +59,78 @@ pub struct Arm<const N: usize, K> {
     pub name: String,
     /// The names of the joints.
     pub joint_names: Vec<String>,
+    /// Turning or sliding.
+    pub joint_kinds: [JointKind; N],
     /// The model, with the soft limits as its position limits.
     pub kinematics: K,
     /// Limits of the joints.
     pub limits: MotionLimits<N>,
-    /// Encoder pulses per degree, with the axis's sign.
-    pub pulses_per_degree: [f64; N],
+    /// Encoder pulses per radian or metre, with the axis's sign.
+    pub pulses_per_unit: [f64; N],
     /// Permitted deviation of a joint from its drive's model.
     pub following_error: [f64; N],
     /// Where the simulated arm stands at first.
     pub home: [f64; N],
 }
 
-impl Arm<6, SixAxisArm> {
+impl<const N: usize, K: PlanningArm<N>> Arm<N, K> {
     /// The arm of a cell.
     ///
     /// # Errors
-    /// [`ArmError`] where the cell's robot is no six-axis arm.
+    /// [`ArmError`] where the cell's robot is no such arm.
     pub fn from_cell(cell: &Cell) -> Result<Self, ArmError> {
         let robot = &cell.robot;
-        let kinematics = ArmDescription::from_cell(robot)?.six_axis()?;
-        let limits = motion_limits(robot)?;
+        let kinematics = K::from_description(&ArmDescription::from_cell(robot)?)?;
         Ok(Self {
             name: robot.name.clone(),
             joint_names: robot.joints.iter().map(|joint| joint.name.clone()).collect(),
+            joint_kinds: joints(robot, |joint| joint.kind)?,
             kinematics,
-            limits,
-            // Joints of an arm turn: the unit of `pulses_per_unit` is the radian.
-            pulses_per_degree: joints(robot, |joint| joint.pulses_per_unit.to_radians())?,
+            limits: MotionLimits {
+                position: joints(robot, Joint::soft_limits)?,
+                velocity: joints(robot, |joint| joint.velocity)?,
+                acceleration: joints(robot, |joint| joint.acceleration)?,
+                jerk: joints(robot, |joint| joint.jerk)?,
+            },
+            pulses_per_unit: joints(robot, |joint| joint.pulses_per_unit)?,
             following_error: joints(robot, |joint| joint.following_error)?,
             home: joints(robot, |joint| joint.home)?,
         })
     }
 }
 
-fn joints<T: Copy, const N: usize>(
-    robot: &Robot,
-    of: impl Fn(&crate::cell::Joint) -> T,
-) -> Result<[T; N], ArmError> {
-    let values: Vec<T> = robot.joints.iter().map(of).collect();
-    values.try_into().map_err(|_| ArmError::JointCount { found: robot.joints.len(), expected: N })
+impl<const N: usize, K> Arm<N, K> {
+    /// The unit that people read this joint's coordinate in.
+    #[must_use]
+    pub fn unit(&self, joint: usize) -> JointUnit {
+        JointUnit::of(self.joint_kinds[joint])
+    }
 }
 
-fn motion_limits<const N: usize>(robot: &Robot) -> Result<MotionLimits<N>, ArmError> {
-    Ok(MotionLimits {
-        position: joints(robot, crate::cell::Joint::soft_limits)?,
-        velocity: joints(robot, |joint| joint.velocity)?,
-        acceleration: joints(robot, |joint| joint.acceleration)?,
-        jerk: joints(robot, |joint| joint.jerk)?,
-    })
+/// The arm of a cell, of one of the kinds that jobs run on.
+#[derive(Debug, Clone)]
+pub enum CellArm {
+    /// Six axes of any structure.
+    SixAxis(Box<Arm<6, SixAxisArm>>),
+    /// Two links in a level plane, a stroke and a turn.
+    Scara(Box<Arm<4, ScaraArm>>),
+}
+
+impl CellArm {
+    /// The arm of a cell.
+    ///
+    /// # Errors
+    /// [`ArmError`] where the cell's robot is of neither kind, or its numbers are no arm.
+    pub fn from_cell(cell: &Cell) -> Result<Self, ArmError> {
+        if ArmDescription::from_cell(&cell.robot)?.is_scara() {
+            Arm::from_cell(cell).map(Box::new).map(Self::Scara)
+        } else {
+            Arm::from_cell(cell).map(Box::new).map(Self::SixAxis)
+        }
+    }
+}
+
+fn joints<T: Copy, const N: usize>(robot: &Robot, of: impl Fn(&Joint) -> T) -> Result<[T; N], ArmError> {
+    let values: Vec<T> = robot.joints.iter().map(of).collect();
+    values.try_into().map_err(|_| ArmError::JointCount { found: robot.joints.len(), expected: N })
 }

@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use seamline::kinematics::{InverseError, Singularity};
 use thiserror::Error;
 
 use crate::job::{Frame, Location};
@@ -75,26 +74,28 @@ pub enum Problem {
         name: String,
     },
     /// A position whose joints are out of range.
-    #[error("{name}: joint {joint} at {value_deg:.2} deg is outside {min_deg:.1} … {max_deg:.1} deg")]
+    #[error("{name}: joint {joint} at {value:.2} {unit} is outside {min:.1} … {max:.1} {unit}")]
     JointRange {
         /// The position.
         name: String,
         /// The joint's name.
         joint: String,
         /// Its position.
-        value_deg: f64,
+        value: f64,
         /// Soft limit below.
-        min_deg: f64,
+        min: f64,
         /// Soft limit above.
-        max_deg: f64,
+        max: f64,
+        /// The unit of all three: degrees or millimetres.
+        unit: &'static str,
     },
     /// A position that the arm does not reach.
-    #[error("{name} cannot be reached: {}", Reach(.error))]
+    #[error("{name} cannot be reached: {reason}")]
     Unreachable {
         /// The position.
         name: String,
         /// Why.
-        error: InverseError,
+        reason: String,
     },
     /// The tool centre point would leave the cell's workspace.
     #[error(
@@ -154,60 +155,5 @@ pub struct Place {
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "at {:.1} of {:.1} {}", self.at, self.of, self.unit)
-    }
-}
-
-/// An inverse error in words.
-pub(super) struct Reach<'a>(pub(super) &'a InverseError);
-
-impl fmt::Display for Reach<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mm = |metres: f64| metres * 1000.0;
-        match self.0 {
-            InverseError::NotFinite => write!(f, "a coordinate is not a number"),
-            InverseError::OutOfReach { distance, least, greatest } => write!(
-                f,
-                "the wrist centre is {:.1} mm from the shoulder, the arm reaches from {:.1} to {:.1} mm",
-                mm(*distance),
-                mm(*least),
-                mm(*greatest)
-            ),
-            InverseError::InsideLateralOffset { radius, offset } => {
-                write!(
-                    f,
-                    "the wrist centre is {:.1} mm from axis 1, expected at least {:.1} mm",
-                    mm(*radius),
-                    mm(*offset)
-                )
-            }
-            InverseError::OutOfOrientation { angle } => {
-                write!(f, "the orientation is {:.2} deg beyond what the arm can turn", angle.to_degrees())
-            }
-            InverseError::NotFollowed { .. } => {
-                write!(f, "the path asks for a direction of motion that the arm's joints do not have")
-            }
-            InverseError::NotConverged { iterations, position_residual, .. } => write!(
-                f,
-                "the numeric inverse ends {:.4} mm off after {iterations} iterations",
-                mm(*position_residual)
-            ),
-            InverseError::PositionLimit { axis, value, min, max } => write!(
-                f,
-                "joint {} would stand at {:.2} deg, outside {:.1} … {:.1} deg, in the configuration asked for",
-                axis + 1,
-                value.to_degrees(),
-                min.to_degrees(),
-                max.to_degrees()
-            ),
-            InverseError::Singular { singularity, .. } => {
-                let name = match singularity {
-                    Singularity::Wrist => "wrist (axes 4 and 6 in line)",
-                    Singularity::Elbow => "elbow (arm stretched or folded)",
-                    Singularity::Shoulder => "shoulder (wrist centre on axis 1)",
-                    Singularity::Rank => "arm (no motion in some direction)",
-                };
-                write!(f, "the path leads through a singularity of the {name}")
-            }
-        }
     }
 }

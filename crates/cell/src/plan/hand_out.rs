@@ -6,7 +6,7 @@ use seamline::path::TimingPiece;
 
 use super::arm::PlanningArm;
 use super::cut;
-use super::error::{PlanError, Problem, Reach};
+use super::error::{PlanError, Problem};
 use super::joint_path::{FollowError, PathJoints};
 use super::planner::{Planned, Planner};
 use super::remark::{Remarks, path_problem};
@@ -170,11 +170,12 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let taught = link.goal?.joints.ok()?;
         let same = if link.pass.is_some() { SAME_JOINT_PASSING } else { SAME_JOINT };
         let joint = (0..N).find(|&joint| (taught[joint] - end[joint]).abs() > same)?;
+        let (name, unit) = (&self.arm.joint_names[joint], self.arm.unit(joint));
+        let [end, taught] = [end[joint], taught[joint]].map(|si| si * unit.per_si);
+        let unit = unit.name;
         Some(format!(
-            "ends with joint {} at {:.1} deg, taught at {:.1} deg: the straight way leads to another configuration",
-            self.arm.joint_names[joint],
-            end[joint].to_degrees(),
-            taught[joint].to_degrees()
+            "ends with joint {name} at {end:.1} {unit}, taught at {taught:.1} {unit}: the straight way leads to another \
+             configuration"
         ))
     }
 
@@ -185,7 +186,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
 
     fn timing_fault(&mut self, route: &Route, error: &TimingError<InverseError>) -> PlanError {
         let (s, reason) = match error {
-            TimingError::Path { position, error } => (*position, Reach(error).to_string()),
+            TimingError::Path { position, error } => (*position, self.arm.in_words(error)),
             TimingError::Discontinuous { position, joint } => {
                 (*position, self.follow_reason(&FollowError::Jump { joint: *joint }))
             }
@@ -219,9 +220,10 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     fn follow_reason(&self, error: &FollowError) -> String {
         let name = |joint: usize| &self.arm.joint_names[joint];
         match error {
-            FollowError::Inverse(error) => Reach(error).to_string(),
+            FollowError::Inverse(error) => self.arm.in_words(error),
             FollowError::JointLimit { joint, limit } => {
-                format!("joint {} is at its limit of {:.1} deg", name(*joint), limit.to_degrees())
+                let unit = self.arm.unit(*joint);
+                format!("joint {} is at its limit of {:.1} {}", name(*joint), limit * unit.per_si, unit.name)
             }
             FollowError::Jump { joint } => {
                 format!("joint {} would have to jump: the path crosses a singularity", name(*joint))

@@ -8,7 +8,7 @@ use super::arm::PlanningArm;
 use super::route::Route;
 use super::timing::JointPath;
 
-/// Greatest change of a joint between two places of the table, rad: far below what separates two branches.
+/// Greatest change of a joint between two places of the table, rad or m: far below what separates two branches.
 const STEP: f64 = 0.1;
 /// Distance of the table's places, at most: metres, and radians of the tool's turn.
 const SPACING: f64 = 5e-3;
@@ -17,10 +17,10 @@ const TURN_SPACING: f64 = 0.02;
 const STEPS: [f64; 2] = [4.0, 20_000.0];
 /// A step is halved this often before a change is called a jump: 5 mm become 5 nm.
 const HALVINGS: u32 = 20;
-/// At the last halving a branch goes on in another one if no joint changes by more than this, rad: the path crosses the
+/// At the last halving a branch goes on in another one if no joint changes by more than this, rad or m: the path crosses the
 /// singularity itself, missing it by a hundredth of the smallest step at most, and the joints do not feel it.
 const CROSSING: f64 = 1e-2;
-/// A joint this near to its limit, in rad, is what made the branch end.
+/// A joint this near to its limit, in rad or m, is what made the branch end.
 const AT_LIMIT: f64 = 1e-3;
 
 /// Why the joints cannot follow a path.
@@ -128,6 +128,10 @@ impl<'a, const N: usize, K: PlanningArm<N>> PathJoints<'a, N, K> {
     }
 
     fn reason(&self, result: Result<[f64; N], InverseError>) -> FollowError {
+        match result {
+            Ok(_) | Err(InverseError::PositionLimit { .. }) => {}
+            Err(error) => return FollowError::Inverse(error),
+        }
         let last = self.last();
         let limits = self.kinematics.position_limits();
         for joint in 0..N {

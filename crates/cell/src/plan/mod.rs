@@ -12,6 +12,7 @@ mod error;
 mod hand_out;
 mod joint_path;
 mod planner;
+mod reach;
 mod remark;
 mod resolve;
 mod route;
@@ -22,7 +23,7 @@ pub mod timing;
 mod tool_path;
 mod workspace;
 
-pub use arm::{Arm, PlanningArm};
+pub use arm::{Arm, CellArm, PlanningArm};
 pub use error::{Place, PlanError, Problem};
 pub use joint_path::{FollowError, PathJoints};
 pub use planner::{Planned, Planner};

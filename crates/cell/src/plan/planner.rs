@@ -380,7 +380,9 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             planned.notices.push(format!("the robot stops exactly on this point ({})", r#move.zone));
         }
         let name = || r#move.target.name.to_string();
-        let target = goal.joints.map_err(|error| Problem::Unreachable { name: name(), error })?;
+        let target = goal
+            .joints
+            .map_err(|error| Problem::Unreachable { name: name(), reason: self.arm.in_words(&error) })?;
         let Speed::JointPercent(percent) = r#move.speed else {
             return Err(Problem::Speed { found: speed::tag(&r#move.speed), expected: "VJ=" });
         };

@@ -1,6 +1,7 @@
 //! From a job's positions to joints and poses.
 
 use seamline::geometry::Pose;
+use seamline::kinematics::InverseError;
 
 use super::arm::{Arm, PlanningArm};
 use super::error::Problem;
@@ -20,7 +21,7 @@ pub(super) struct Goal<const N: usize> {
     pub(super) base_from_tcp: Pose,
     pub(super) tool: ToolPose,
     /// The joints that were taught: given as pulses, or by the configuration.
-    pub(super) joints: Result<[f64; N], seamline::kinematics::InverseError>,
+    pub(super) joints: Result<[f64; N], InverseError>,
 }
 
 impl ToolPose {
@@ -47,14 +48,33 @@ pub(super) fn goal<const N: usize, K: PlanningArm<N>>(
             Ok(Goal { base_from_tcp, tool, joints: Ok(joints) })
         }
         Coordinates::Rectangular(position) => {
-            let base_from_tcp = base_from_frame(position, cell, &name())? * position.pose();
+            let taught = base_from_frame(position, cell, &name())? * position.pose();
+            let base_from_tcp = with_taken_orientation(&taught, &tool, &arm.kinematics);
             let base_from_flange = base_from_tcp * tool.flange_from_tcp.inverse();
             let joints =
                 arm.kinematics.in_configuration(&base_from_flange, &position.configuration, reference);
+            // No way leads to an orientation that the arm cannot take.
+            if let Err(error @ InverseError::OutOfOrientation { .. }) = &joints {
+                return Err(Problem::Unreachable { name: name(), reason: arm.in_words(error) });
+            }
             Ok(Goal { base_from_tcp, tool, joints })
         }
         Coordinates::Angles(_) => Err(Problem::StationPosition { name: name() }),
     }
+}
+
+/// The tool centre point where it is taught, turned to what the arm can take by no more than the job's digits round.
+fn with_taken_orientation<const N: usize>(
+    base_from_tcp: &Pose,
+    tool: &ToolPose,
+    arm: &impl PlanningArm<N>,
+) -> Pose {
+    let flange_from_tcp = &tool.flange_from_tcp.rotation;
+    let base_from_flange = base_from_tcp.rotation * flange_from_tcp.inverse();
+    let taken = arm.taken_orientation(&base_from_flange);
+    // Bit for bit as taught where there is nothing to turn.
+    let rotation = if taken == base_from_flange { base_from_tcp.rotation } else { taken * flange_from_tcp };
+    Pose::from_parts(base_from_tcp.translation, rotation)
 }
 
 /// The joints after an increment in pulses.
@@ -75,7 +95,7 @@ pub(super) fn pulse_increment<const N: usize, K>(
 
 fn joints_of<const N: usize, K>(pulses: &[i32], arm: &Arm<N, K>, name: &str) -> Result<[f64; N], Problem> {
     let short = || Problem::PositionLength { name: name.into(), found: pulses.len(), expected: N };
-    joints_from_pulses(pulses, &arm.pulses_per_degree).ok_or_else(short)
+    joints_from_pulses(pulses, &arm.pulses_per_unit).ok_or_else(short)
 }
 
 fn base_from_frame(position: &Rectangular, cell: &Cell, name: &str) -> Result<Pose, Problem> {
@@ -93,12 +113,14 @@ fn base_from_frame(position: &Rectangular, cell: &Cell, name: &str) -> Result<Po
 fn check_range<const N: usize, K>(joints: &[f64; N], arm: &Arm<N, K>, name: &str) -> Result<(), Problem> {
     for (joint, (value, (min, max))) in joints.iter().zip(arm.limits.position).enumerate() {
         if !(min..=max).contains(value) {
+            let unit = arm.unit(joint);
             return Err(Problem::JointRange {
                 name: name.into(),
                 joint: arm.joint_names[joint].clone(),
-                value_deg: value.to_degrees(),
-                min_deg: min.to_degrees(),
-                max_deg: max.to_degrees(),
+                value: value * unit.per_si,
+                min: min * unit.per_si,
+                max: max * unit.per_si,
+                unit: unit.name,
             });
         }
     }

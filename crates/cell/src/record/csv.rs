@@ -5,23 +5,34 @@ use std::fmt::Write as _;
 use nalgebra::{Quaternion, Unit};
 use seamline::control::Mode;
 use seamline::geometry::{Pose, Rotation, Vector3};
+use seamline::kinematics::JointKind;
 
 use super::number;
 use super::sample::{MAX_JOINTS, Sample};
 
-/// The columns for a robot of `joints` joints, separated by commas.
-pub(super) fn header(joints: usize) -> String {
-    let mut header = String::from("time_s,mode,line,segment,override");
-    // Writing into a string cannot fail.
-    for joint in 1..=joints {
-        let _ = write!(header, ",q{joint}_rad");
-    }
-    for joint in 1..=joints {
-        let _ = write!(header, ",q{joint}_measured_rad");
+/// What stands before the joints' columns.
+const BEFORE_JOINTS: &str = "time_s,mode,line,segment,override";
+
+/// The columns for a robot with these joints, separated by commas.
+pub(super) fn header(joints: &[JointKind]) -> String {
+    let mut header = BEFORE_JOINTS.to_owned();
+    for what in ["", "_measured"] {
+        for (index, kind) in joints.iter().enumerate() {
+            // Writing into a string cannot fail.
+            let _ = write!(header, ",q{}{what}_{}", index + 1, unit(*kind));
+        }
     }
     header.push_str(",tcp_x_mm,tcp_y_mm,tcp_z_mm,tcp_qx,tcp_qy,tcp_qz,tcp_qw,tcp_speed_mm_s,arc");
     header.push_str(",seam_lateral_mm,seam_height_mm,seam_error_mm");
     header
+}
+
+/// Unit of a joint's columns.
+fn unit(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Revolute => "rad",
+        JointKind::Prismatic => "m",
+    }
 }
 
 /// Appends one row with its line end.
@@ -67,9 +78,15 @@ fn itoa(mut value: u32, buffer: &mut [u8; 10]) -> &[u8] {
     }
 }
 
-/// The number of joints that a header announces, if it is one of ours.
-pub(super) fn joints_of(found: &str) -> Option<usize> {
-    (1..=MAX_JOINTS).find(|joints| header(*joints) == found)
+/// The joints that a header announces, if it is one of ours.
+pub(super) fn joints_of(found: &str) -> Option<Vec<JointKind>> {
+    let columns = found.strip_prefix(BEFORE_JOINTS)?.split(',').skip(1).take(MAX_JOINTS);
+    let kind = |(index, column): (usize, &str)| {
+        let is = |kind| column == format!("q{}_{}", index + 1, unit(kind));
+        [JointKind::Revolute, JointKind::Prismatic].into_iter().find(|kind| is(*kind))
+    };
+    let joints: Vec<_> = columns.enumerate().map_while(kind).collect();
+    (!joints.is_empty() && header(&joints) == found).then_some(joints)
 }
 
 /// Reads one row without its line end; the error names the first column that does not fit.

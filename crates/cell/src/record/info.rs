@@ -1,20 +1,23 @@
 //! What a run was meant to do: the data that recorded samples are held against.
 
 use seamline::geometry::Vector3;
+use seamline::kinematics::JointKind;
 use seamline::path::{Curve, Measure, Path};
 
-/// A joint's name and limits.
+/// A joint's name and limits, in radians or metres by its kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointInfo {
     /// Name on the axis, such as `S` or `L`.
     pub name: String,
-    /// Least and greatest position, in radians.
+    /// Turning or sliding.
+    pub kind: JointKind,
+    /// Least and greatest position.
     pub position: [f64; 2],
-    /// Velocity limit, in rad/s.
+    /// Velocity limit, per second.
     pub velocity: f64,
-    /// Acceleration limit, in rad/s².
+    /// Acceleration limit, per s².
     pub acceleration: f64,
-    /// Jerk limit, in rad/s³.
+    /// Jerk limit, per s³.
     pub jerk: f64,
 }
 

@@ -7,6 +7,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use rtrb::{Consumer, Producer, RingBuffer};
+use seamline::kinematics::JointKind;
 
 use super::atomic::AtomicFile;
 use super::csv;
@@ -93,7 +94,7 @@ impl Recorder {
             whole: whole_receiver,
             analysis: Analysis::new(run),
             file: AtomicFile::create(path)?,
-            joints,
+            joints: run.joints.iter().map(|joint| joint.kind).collect(),
         };
         let thread = thread::Builder::new().name("recorder".to_owned()).spawn(move || writer.run())?;
         Ok((SampleSender { ring: producer, lost: 0 }, Self { news, whole, thread }))
@@ -135,13 +136,13 @@ struct Writer {
     whole: mpsc::Receiver<()>,
     analysis: Analysis,
     file: AtomicFile,
-    joints: usize,
+    joints: Vec<JointKind>,
 }
 
 impl Writer {
     fn run(mut self) -> io::Result<Findings> {
         let mut text = Vec::with_capacity(BUFFER + (1 << 12));
-        text.extend_from_slice(csv::header(self.joints).as_bytes());
+        text.extend_from_slice(csv::header(&self.joints).as_bytes());
         text.push(b'\n');
         loop {
             // Asked before the ring is looked at, so that no sample slips through between the two.
@@ -163,7 +164,7 @@ impl Writer {
             }
             if let Ok(chunk) = self.ring.read_chunk(available) {
                 for sample in chunk {
-                    csv::push_row(&mut text, &sample, self.joints);
+                    csv::push_row(&mut text, &sample, self.joints.len());
                     self.analysis.sample(&sample);
                     if text.len() >= BUFFER {
                         self.file.write_all(&text)?;
@@ -226,7 +227,8 @@ mod tests {
         let path = folder.file("recording.csv");
         let mut random = Random::new(11);
         for joints in [1, 4, 6, 7] {
-            let (mut sender, recorder) = Recorder::start(&path, &robot(joints)).unwrap();
+            let run = robot(joints);
+            let (mut sender, recorder) = Recorder::start(&path, &run).unwrap();
             let samples: Vec<_> = (0..5000).map(|cycle| sample(&mut random, cycle, joints)).collect();
             for sample in &samples {
                 sender.push_waiting(*sample);
@@ -234,7 +236,7 @@ mod tests {
             let findings = recorder.finish(sender).unwrap();
             assert_eq!(findings.cycles, 5000);
             let read = Recording::read(&path).unwrap();
-            assert_eq!(read.joints, joints);
+            assert!(read.joints.iter().eq(run.joints.iter().map(|joint| &joint.kind)));
             assert_eq!(read.samples.len(), samples.len());
             assert!(read.samples.iter().zip(&samples).all(|(read, written)| same(read, written)));
         }
@@ -280,7 +282,7 @@ mod tests {
         }
         let error = Recorder::start(&folder.file("no/such/recording.csv"), &robot(6)).unwrap_err();
         assert!(error.to_string().contains("recording.csv"), "{error}");
-        let header = csv::header(1);
+        let header = csv::header(&[JointKind::Revolute]);
         let row = "0.0,running,1,1,1.0,0.1,0.1,1.0,2.0,3.0,0.0,0.0,0.0,1.0,5.0,1,0.0,0.0,";
         for (content, message) in [
             (String::new(), "line 1: this is not the header of a recording"),

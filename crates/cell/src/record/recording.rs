@@ -5,14 +5,16 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 
+use seamline::kinematics::JointKind;
+
 use super::csv;
 use super::sample::Sample;
 
 /// A recording in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// How many joints the robot has.
-    pub joints: usize,
+    /// The robot's joints: turning or sliding.
+    pub joints: Vec<JointKind>,
     /// One sample a cycle, bit for bit as recorded.
     pub samples: Vec<Sample>,
 }
@@ -76,7 +78,7 @@ impl Recording {
         let joints = csv::joints_of(&header).ok_or(RecordingError::Header)?;
         let mut samples = Vec::new();
         for (index, row) in lines.enumerate() {
-            let sample = csv::parse_row(&row?, joints).map_err(|column| RecordingError::Cell {
+            let sample = csv::parse_row(&row?, joints.len()).map_err(|column| RecordingError::Cell {
                 line: index + 2,
                 column,
                 name: header.split(',').nth(column - 1).unwrap_or_default().to_owned(),

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use seamline::kinematics::JointKind;
+
 use super::info::{Acceptance, JointInfo, RunInfo};
 
 /// A small generator of pseudo-random numbers (splitmix64), so that every run sees the same cases.
@@ -57,6 +59,8 @@ pub(super) fn robot(joints: usize) -> RunInfo {
         let scale = 1.0 + index as f64;
         JointInfo {
             name: format!("J{}", index + 1),
+            // The third joint slides, as a SCARA's.
+            kind: if index == 2 { JointKind::Prismatic } else { JointKind::Revolute },
             position: [-scale, 2.0 * scale],
             velocity: 2.0 * scale,
             acceleration: 10.0 * scale,

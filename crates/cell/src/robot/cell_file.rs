@@ -28,14 +28,9 @@ impl ArmDescription {
             return Err(ArmError::JointCount { found, expected });
         }
         for (model, cell) in self.joints.iter().zip(&robot.joints) {
-            let kind = core_kind(cell);
-            if model.kind != kind {
-                let name = cell.name.clone();
-                return Err(ArmError::JointKind {
-                    name,
-                    model: kind_name(model.kind),
-                    cell: kind_name(kind),
-                });
+            if model.kind != cell.kind {
+                let (name, model, cell) = (cell.name.clone(), kind_name(model.kind), kind_name(cell.kind));
+                return Err(ArmError::JointKind { name, model, cell });
             }
         }
         Ok(self.structure)
@@ -45,21 +40,19 @@ impl ArmDescription {
 fn dh_chain(table: &DhTable, robot: &Robot) -> Chain {
     let row = |(row, joint): (&cell::DhRow, &cell::Joint)| {
         let cell::DhRow { a, alpha, d, theta } = *row;
-        DhRow { a, alpha, d, theta, kind: core_kind(joint) }
+        DhRow { a, alpha, d, theta, kind: joint.kind }
     };
     Chain::Dh { convention: table.convention, rows: table.rows.iter().zip(&robot.joints).map(row).collect() }
 }
 
 fn joint(joint: &cell::Joint) -> Joint {
     let (position_min, position_max) = joint.soft_limits();
-    let (name, kind) = (joint.name.clone(), core_kind(joint));
-    Joint { name, kind, position_min, position_max, velocity_max: joint.velocity }
-}
-
-fn core_kind(joint: &cell::Joint) -> JointKind {
-    match joint.kind {
-        cell::JointKind::Revolute => JointKind::Revolute,
-        cell::JointKind::Prismatic => JointKind::Prismatic,
+    Joint {
+        name: joint.name.clone(),
+        kind: joint.kind,
+        position_min,
+        position_max,
+        velocity_max: joint.velocity,
     }
 }
 

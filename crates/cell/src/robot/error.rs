@@ -19,6 +19,12 @@ pub enum ArmError {
         /// What would do.
         expected: usize,
     },
+    /// The arm is of another structure than its user can work with.
+    #[error("expected {expected}")]
+    Structure {
+        /// What would do.
+        expected: &'static str,
+    },
     /// A joint of the model is of another kind than in the cell file.
     #[error("joint {name}: the model's is {model}, the cell file's is {cell}")]
     JointKind {

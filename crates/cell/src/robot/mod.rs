@@ -6,6 +6,7 @@
 mod built_in;
 mod cell_file;
 mod error;
+mod unit;
 mod urdf;
 
 use seamline::geometry::Pose;
@@ -18,6 +19,7 @@ use crate::cell::JOINTS_MAX;
 
 pub use built_in::BUILT_IN;
 pub use error::{ArmError, UrdfError, UrdfProblem};
+pub use unit::JointUnit;
 
 /// An arm as data.
 #[derive(Debug, Clone, PartialEq)]
@@ -97,9 +99,7 @@ impl ArmDescription {
                 let arm = SphericalWristArm::try_new(*geometry, self.limits()?)?;
                 Ok(task.run(&arm, Inverse::ClosedForm))
             }
-            Structure::Scara(geometry) => {
-                Ok(task.run(&ScaraArm::try_new(*geometry, self.limits()?)?, Inverse::ClosedForm))
-            }
+            Structure::Scara(_) => Ok(task.run(&self.scara()?, Inverse::ClosedForm)),
             Structure::Chain(chain) => self.with_chain(chain, task),
         }
     }
@@ -115,6 +115,23 @@ impl ArmDescription {
             }
             Structure::Scara(_) => Err(ArmError::JointCount { found: self.joints.len(), expected: 6 }),
             Structure::Chain(chain) => Ok(SixAxisArm::from_chain(self.build(chain)?)),
+        }
+    }
+
+    /// Whether the arm is a SCARA by its structure.
+    #[must_use]
+    pub fn is_scara(&self) -> bool {
+        matches!(self.structure, Structure::Scara(_))
+    }
+
+    /// The arm, if it is a SCARA.
+    ///
+    /// # Errors
+    /// [`ArmError`] where the numbers are no arm, or the arm has another structure.
+    pub fn scara(&self) -> Result<ScaraArm, ArmError> {
+        match &self.structure {
+            Structure::Scara(geometry) => Ok(ScaraArm::try_new(*geometry, self.limits()?)?),
+            _ => Err(ArmError::Structure { expected: "a SCARA" }),
         }
     }
 

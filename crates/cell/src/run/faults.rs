@@ -1,24 +1,30 @@
 //! Faults in words.
 
 use seamline::drive::DriveFault;
+use seamline::kinematics::JointKind;
 use seamline::safety::Fault;
+
+use crate::record::JointInfo;
+use crate::robot::JointUnit;
 
 /// One sentence with name, joint and values, in degrees and millimetres.
 #[must_use]
-pub fn describe(fault: &Fault, joint_names: &[String]) -> String {
-    let joint = |axis: usize| joint_names.get(axis).map_or("?", String::as_str);
-    let deg = |radians: f64| radians.to_degrees();
-    let beyond = |what: &str, axis: usize, value: f64, limit: f64, unit: &str| {
-        format!("{what} of joint {}: {:.3} {unit}, limit {:.3} {unit}", joint(axis), deg(value), deg(limit))
+pub fn describe(fault: &Fault, joints: &[JointInfo]) -> String {
+    let joint = |axis: usize| joints.get(axis).map_or("?", |joint| joint.name.as_str());
+    let beyond = |what: &str, axis: usize, value: f64, limit: f64, per: &str| {
+        let unit = JointUnit::of(joints.get(axis).map_or(JointKind::Revolute, |joint| joint.kind));
+        let [value, limit] = [value, limit].map(|si| si * unit.per_si);
+        let (joint, unit) = (joint(axis), unit.name);
+        format!("{what} of joint {joint}: {value:.3} {unit}{per}, limit {limit:.3} {unit}{per}")
     };
     match *fault {
-        Fault::FollowingError { axis, value, limit } => beyond("following error", axis, value, limit, "deg"),
-        Fault::PositionLimit { axis, value, limit } => beyond("position limit", axis, value, limit, "deg"),
-        Fault::VelocityLimit { axis, value, limit } => beyond("velocity limit", axis, value, limit, "deg/s"),
+        Fault::FollowingError { axis, value, limit } => beyond("following error", axis, value, limit, ""),
+        Fault::PositionLimit { axis, value, limit } => beyond("position limit", axis, value, limit, ""),
+        Fault::VelocityLimit { axis, value, limit } => beyond("velocity limit", axis, value, limit, "/s"),
         Fault::AccelerationLimit { axis, value, limit } => {
-            beyond("acceleration limit", axis, value, limit, "deg/s²")
+            beyond("acceleration limit", axis, value, limit, "/s²")
         }
-        Fault::JerkLimit { axis, value, limit } => beyond("jerk limit", axis, value, limit, "deg/s³"),
+        Fault::JerkLimit { axis, value, limit } => beyond("jerk limit", axis, value, limit, "/s³"),
         Fault::Workspace { position } => at("workspace left", &position),
         Fault::NoInverse { position } => at("no joint solution", &position),
         Fault::NotFinite { axis } => format!("joint {} is not a number", joint(axis)),

@@ -10,6 +10,7 @@
 
 mod announcement;
 mod beat;
+mod cell_arm;
 mod check;
 mod clock;
 mod error;

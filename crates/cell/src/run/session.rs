@@ -86,7 +86,7 @@ pub fn run<const N: usize, K: PlanningArm<N> + Send>(
     let mut machine = Machine::new(cell, arm, drive, MonotonicClock::default(), consumer);
     machine.set_override(options.speed_override);
     let walk = Walk::new(jobs, cell, arm)?;
-    let mut supervisor = Supervisor::new(walk, producer, reads_inputs, recorder, arm.joint_names.clone());
+    let mut supervisor = Supervisor::new(walk, producer, reads_inputs, recorder, info.joints.clone());
     let started = Instant::now();
     let planned = duration / options.speed_override;
     let mut watch = |beat: &Beat| progress(Progress { time: beat.time, planned, line: beat.line });
@@ -135,6 +135,7 @@ fn logical<const N: usize, K: PlanningArm<N>>(
 fn run_info<const N: usize, K>(jobs: &JobSet, cell: &Cell, arm: &Arm<N, K>) -> RunInfo {
     let joints = (0..N).map(|joint| JointInfo {
         name: arm.joint_names[joint].clone(),
+        kind: arm.joint_kinds[joint],
         position: [arm.limits.position[joint].0, arm.limits.position[joint].1],
         velocity: arm.limits.velocity[joint],
         acceleration: arm.limits.acceleration[joint],

@@ -10,14 +10,14 @@ use super::faults::describe;
 use super::feeder::Feeder;
 use super::walk::Walk;
 use crate::plan::PlanningArm;
-use crate::record::{Event, EventKind, Findings, Recorder, SampleSender};
+use crate::record::{Event, EventKind, Findings, JointInfo, Recorder, SampleSender};
 
 /// The side of a run that may wait, allocate and write.
 #[derive(Debug)]
 pub(super) struct Supervisor<'a, const N: usize, K> {
     feeder: Feeder<'a, N, K>,
     recorder: Recorder,
-    joint_names: Vec<String>,
+    joints: Vec<JointInfo>,
     fault_reported: bool,
 }
 
@@ -27,10 +27,10 @@ impl<'a, const N: usize, K: PlanningArm<N>> Supervisor<'a, N, K> {
         queue: Producer<Command<N>>,
         in_step: bool,
         recorder: Recorder,
-        joint_names: Vec<String>,
+        joints: Vec<JointInfo>,
     ) -> Self {
         let feeder = Feeder::new(walk, queue, in_step);
-        Self { feeder, recorder, joint_names, fault_reported: false }
+        Self { feeder, recorder, joints, fault_reported: false }
     }
 
     /// Fills the queue before the first cycle.
@@ -47,7 +47,7 @@ impl<'a, const N: usize, K: PlanningArm<N>> Supervisor<'a, N, K> {
         }
         if let Some(fault) = beat.fault.filter(|_| !self.fault_reported) {
             self.fault_reported = true;
-            let text = describe(&fault, &self.joint_names);
+            let text = describe(&fault, &self.joints);
             recorder.event(Event { time: beat.time, line: beat.line, kind: EventKind::Fault, text });
         }
         self.feeder.feed(beat.time, beat.marker, |info| recorder.segment(info));

@@ -59,7 +59,7 @@ impl<'a, const N: usize, K: PlanningArm<N>> CellWorld<'a, N, K> {
     fn base_from_flange(&self, position: &JobPosition) -> Option<Pose> {
         match &position.coordinates {
             Coordinates::Pulses(pulses) => {
-                let joints = joints_from_pulses(pulses, &self.arm.pulses_per_degree)?;
+                let joints = joints_from_pulses(pulses, &self.arm.pulses_per_unit)?;
                 Some(self.arm.kinematics.forward(&joints))
             }
             Coordinates::Rectangular(rectangular) => {
@@ -86,7 +86,7 @@ impl<const N: usize, K: PlanningArm<N>> World for CellWorld<'_, N, K> {
 
     fn current_position(&mut self) -> Option<JobPosition> {
         self.inputs_read += 1;
-        let pulses = pulses_from_joints(&self.joints, &self.arm.pulses_per_degree);
+        let pulses = pulses_from_joints(&self.joints, &self.arm.pulses_per_unit);
         Some(JobPosition { coordinates: Coordinates::Pulses(pulses), tool: 0 })
     }
 

@@ -65,7 +65,7 @@ pub(crate) fn step(line: u32, action: Action) -> Step {
 
 /// A move to joint positions, given in pulses as a robot saves them.
 pub(crate) fn move_to(line: u32, path: MovePath, speed: Speed, arm: &Ar2010, joints: &[f64; 6]) -> Step {
-    let pulses = pulses_from_joints(joints, &arm.pulses_per_degree);
+    let pulses = pulses_from_joints(joints, &arm.pulses_per_unit);
     let name = PositionName { local: false, kind: PositionKind::C, number: line };
     let position = JobPosition { coordinates: Coordinates::Pulses(pulses), tool: 0 };
     step(

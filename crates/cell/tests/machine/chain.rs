@@ -39,8 +39,8 @@ impl Way {
             pose.rotation *= UnitQuaternion::from_axis_angle(&Vector3::z_axis(), degrees.to_radians());
             let q = arm.kinematics.inverse_nearest(&(pose * torch.inverse()), &HOME).unwrap();
             // The point is where the pulses say, some micrometres off.
-            let pulses = pulses_from_joints(&q, &arm.pulses_per_degree);
-            let q: [f64; 6] = joints_from_pulses(&pulses, &arm.pulses_per_degree).unwrap();
+            let pulses = pulses_from_joints(&q, &arm.pulses_per_unit);
+            let q: [f64; 6] = joints_from_pulses(&pulses, &arm.pulses_per_unit).unwrap();
             poses.push(independent_forward(&q) * torch);
             joints.push(q);
         }

@@ -84,8 +84,8 @@ impl Run {
     fn off_the_line(&self, arm: &Ar2010) -> f64 {
         let tcp = |q: &[f64; 6]| (independent_forward(q) * independent_torch()).translation.vector;
         let rounded = |joints: &[f64; 6]| {
-            let pulses = seamline_cell::job::pulses_from_joints(joints, &arm.pulses_per_degree);
-            seamline_cell::job::joints_from_pulses(&pulses, &arm.pulses_per_degree).unwrap()
+            let pulses = seamline_cell::job::pulses_from_joints(joints, &arm.pulses_per_unit);
+            seamline_cell::job::joints_from_pulses(&pulses, &arm.pulses_per_unit).unwrap()
         };
         let (start, end) = (tcp(&rounded(&START)), tcp(&rounded(&END)));
         let direction = (end - start).normalize();

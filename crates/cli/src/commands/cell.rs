@@ -2,19 +2,26 @@
 
 use std::io::Write as _;
 
-use seamline_cell::cell::DEFAULT_CELL_TOML;
+use clap::builder::PossibleValuesParser;
+use seamline_cell::cell::BUILT_IN_CELLS;
 
-/// Print the embedded default cell as TOML.
+/// Print a built-in cell as TOML.
 ///
-/// A cell file of your own gives only what differs from it.
+/// The default cell has every key there is. A cell file of your own gives only what differs from it, as the other built-in
+/// cells do.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  seamline cell --print > cell.toml")]
 pub(crate) struct Arguments {
-    /// Print the default cell.
+    /// Print the cell.
     #[arg(long, required = true)]
     print: bool,
+    /// Which one.
+    #[arg(default_value = "default", value_parser = PossibleValuesParser::new(BUILT_IN_CELLS.map(|(name, _)| name)))]
+    name: String,
 }
 
-pub(crate) fn run(_: &Arguments) -> anyhow::Result<()> {
-    Ok(std::io::stdout().write_all(DEFAULT_CELL_TOML.as_bytes())?)
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let chosen = BUILT_IN_CELLS.iter().find(|(name, _)| *name == arguments.name);
+    let text = chosen.map_or("", |(_, text)| text);
+    Ok(std::io::stdout().write_all(text.as_bytes())?)
 }

@@ -4,9 +4,9 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use anyhow::bail;
-use seamline_cell::run::{CheckReport, check};
+use seamline_cell::run::CheckReport;
 
-use super::inputs::load;
+use super::inputs::{CellArguments, load};
 
 /// Parse, resolve and plan a job without running it, and name every problem.
 #[derive(Debug, clap::Args)]
@@ -14,14 +14,13 @@ use super::inputs::load;
 pub(crate) struct Arguments {
     /// The job file (INFORM, .JBI).
     job: PathBuf,
-    /// Cell file (TOML); without it the embedded default cell.
-    #[arg(long, value_name = "F.toml")]
-    cell: Option<PathBuf>,
+    #[command(flatten)]
+    cell: CellArguments,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let inputs = load(&arguments.job, arguments.cell.as_deref())?;
-    let report = check(&inputs.jobs, &inputs.cell, &inputs.arm)?;
+    let inputs = load(&arguments.job, &arguments.cell)?;
+    let report = inputs.arm.check(&inputs.jobs, &inputs.cell)?;
     print(&report)?;
     match report.errors.as_slice() {
         [] => Ok(()),

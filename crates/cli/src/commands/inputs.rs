@@ -1,28 +1,42 @@
 //! What `run` and `check` read: a job with the jobs it calls, and a cell.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use seamline::kinematics::SixAxisArm;
 use seamline_cell::cell::Cell;
 use seamline_cell::job::JobSet;
-use seamline_cell::plan::Arm;
+use seamline_cell::plan::CellArm;
 use seamline_cell::run::RunError;
+
+/// The cell that a subcommand is about.
+#[derive(Debug, clap::Args)]
+pub(crate) struct CellArguments {
+    /// Cell file (TOML), or a built-in cell (default, scara); without it the default.
+    #[arg(long = "cell", value_name = "NAME|F.toml")]
+    source: Option<PathBuf>,
+}
+
+impl CellArguments {
+    fn read(&self) -> anyhow::Result<Cell> {
+        let Some(path) = &self.source else { return Ok(Cell::default_cell()?) };
+        match path.to_str().and_then(Cell::built_in) {
+            Some(cell) => Ok(cell?),
+            None => Ok(Cell::load(path)?),
+        }
+    }
+}
 
 /// A job and the cell it runs in.
 #[derive(Debug)]
 pub(crate) struct Inputs {
     pub(crate) jobs: JobSet,
     pub(crate) cell: Cell,
-    pub(crate) arm: Arm<6, SixAxisArm>,
+    pub(crate) arm: CellArm,
 }
 
 /// Reads both; the first wrong file is the error.
-pub(crate) fn load(job: &Path, cell: Option<&Path>) -> anyhow::Result<Inputs> {
-    let cell = match cell {
-        Some(path) => Cell::load(path)?,
-        None => Cell::default_cell()?,
-    };
-    let arm = Arm::from_cell(&cell).map_err(RunError::from)?;
+pub(crate) fn load(job: &Path, cell: &CellArguments) -> anyhow::Result<Inputs> {
+    let cell = cell.read()?;
+    let arm = CellArm::from_cell(&cell).map_err(RunError::from)?;
     let jobs = JobSet::load(job)?;
     Ok(Inputs { jobs, cell, arm })
 }

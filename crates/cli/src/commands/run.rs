@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use seamline_cell::record::Verdict;
-use seamline_cell::run::{Progress, RunOptions, RunReport, run as run_job};
+use seamline_cell::run::{Progress, RunOptions, RunReport};
 
-use super::inputs::{Inputs, load};
+use super::inputs::{CellArguments, Inputs, load};
 use crate::report::write_report;
 
 /// Run a job in the simulated cell, cycle by cycle, and report on the motion.
@@ -19,9 +19,8 @@ use crate::report::write_report;
 pub(crate) struct Arguments {
     /// The job file (INFORM, .JBI).
     job: PathBuf,
-    /// Cell file (TOML); without it the embedded default cell.
-    #[arg(long, value_name = "F.toml")]
-    cell: Option<PathBuf>,
+    #[command(flatten)]
+    cell: CellArguments,
     /// Folder for the results [default: out/JOBNAME].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -42,7 +41,7 @@ fn percent(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let inputs = load(&arguments.job, arguments.cell.as_deref())?;
+    let inputs = load(&arguments.job, &arguments.cell)?;
     let out = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.job));
     let options = RunOptions {
         out: out.clone(),
@@ -78,7 +77,7 @@ fn run_with_progress(inputs: &Inputs, options: &RunOptions) -> anyhow::Result<Ru
             bar.set_message(format!("line {}", at.line));
         }
     };
-    let report = run_job(&inputs.jobs, &inputs.cell, &inputs.arm, options, progress)?;
+    let report = inputs.arm.run(&inputs.jobs, &inputs.cell, options, progress)?;
     bar.finish_and_clear();
     Ok(report)
 }

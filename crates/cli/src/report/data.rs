@@ -3,6 +3,7 @@
 use seamline::geometry::Vector3;
 use seamline::path::Curve;
 use seamline_cell::record::{JointInfo, JointTraces, PlotData, RunInfo, SegmentInfo, Summary};
+use seamline_cell::robot::JointUnit;
 use serde::Serialize;
 
 /// Points in which an arc is drawn.
@@ -32,6 +33,8 @@ pub(super) struct Data {
 #[derive(Debug, Serialize)]
 struct Joint {
     name: String,
+    /// `°` or `mm`.
+    unit: &'static str,
     /// Position, velocity, acceleration, jerk.
     traces: [Trace; 4],
     following: Flat,
@@ -110,11 +113,11 @@ impl Data {
 }
 
 fn joint(summary: &Summary, index: usize, info: &JointInfo, traces: &JointTraces) -> Joint {
-    let degrees = 1f64.to_degrees();
+    let JointUnit { name, per_si } = JointUnit::of(info.kind);
     let trace = |points: &_, [low, high]: [f64; 2], used: f64| Trace {
-        limits: [short(low * degrees), short(high * degrees)],
+        limits: [short(low * per_si), short(high * per_si)],
         used: short(used),
-        points: flat(points, degrees),
+        points: flat(points, per_si),
     };
     let symmetric = |limit: f64| [-limit, limit];
     let used = summary.joints.get(index).map_or([0.0; 4], |figures| {
@@ -122,13 +125,14 @@ fn joint(summary: &Summary, index: usize, info: &JointInfo, traces: &JointTraces
     });
     Joint {
         name: info.name.clone(),
+        unit: if name == "deg" { "°" } else { name },
         traces: [
             trace(&traces.position, info.position, used[0]),
             trace(&traces.velocity, symmetric(info.velocity), used[1]),
             trace(&traces.acceleration, symmetric(info.acceleration), used[2]),
             trace(&traces.jerk, symmetric(info.jerk), used[3]),
         ],
-        following: flat(&traces.following_error, degrees),
+        following: flat(&traces.following_error, per_si),
     }
 }
 

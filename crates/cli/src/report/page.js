@@ -37,7 +37,13 @@ new TimeChart(byId("override"), {
 });
 
 // One row a joint, one column an order of derivative.
-const ORDERS = ["position °", "velocity °/s", "acceleration °/s²", "jerk °/s³"];
+const units = [...new Set(data.joints.map((joint) => joint.unit))];
+const inUnits = (quantity, per) => quantity + " " + units.map((unit) => unit + per).join(" or ");
+const ORDERS = [
+  inUnits("position", ""), inUnits("velocity", "/s"), inUnits("acceleration", "/s²"), inUnits("jerk", "/s³"),
+];
+// Where there are several, the joint's name says its own.
+const nameOf = (joint) => (units.length > 1 ? joint.name + " (" + joint.unit + ")" : joint.name);
 let scaleToLimits = true;
 const grid = byId("joint-grid");
 grid.style.gridTemplateColumns = "18px repeat(4, minmax(0, 1fr))";
@@ -51,7 +57,7 @@ const element = (name, text) => {
 element("", "");
 for (const title of ORDERS) element("title", title);
 for (const joint of data.joints) {
-  element("name", joint.name);
+  element("name", nameOf(joint));
   joint.traces.forEach(({ limits: all, used, points }, order) => {
     // A joint without a limit has null.
     const limits = all.filter(Number.isFinite);
@@ -77,9 +83,9 @@ for (const [text, limits] of [["Scale to limits", true], ["Scale to data", false
   bar.append(button);
 }
 new TimeChart(byId("following"), {
-  title: "Following error, °", unit: "°", height: 150,
+  title: inUnits("Following error,", ""), unit: units.length > 1 ? "" : units[0], height: 150,
   series: data.joints.map((joint, index) => ({
-    name: joint.name, points: joint.following, colour: COLOURS.series[index % COLOURS.series.length],
+    name: nameOf(joint), points: joint.following, colour: COLOURS.series[index % COLOURS.series.length],
   })),
 });
 

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use seamline::control::Mode;
 use seamline::geometry::{EulerZyx, Pose};
+use seamline::kinematics::JointKind;
 use seamline::path::Path as ToolPath;
 use seamline_cell::record::{
     Acceptance, Analysis, Event, EventKind, Findings, JointInfo, MAX_JOINTS, Outcome, Sample, SegmentKind,
@@ -22,6 +23,7 @@ const RAMP: f64 = 0.25;
 fn robot() -> RunInfo {
     let joint = |(name, range): (&str, [f64; 2])| JointInfo {
         name: name.to_owned(),
+        kind: JointKind::Revolute,
         position: range,
         velocity: 3.6,
         acceleration: 20.0,

@@ -6,12 +6,12 @@ use super::branches::{Branches, nearest};
 use super::closed_form::{Bend, STILL, TwoLink};
 use super::limits::principal;
 use super::{InverseError, JointAxes, JointAxis, JointJet, JointKind, JointLimits, Kinematics, ModelError};
-use crate::geometry::{Pose, PoseJet, Vector3, is_finite};
+use crate::geometry::{Pose, PoseJet, Rotation, Vector3, is_finite};
 use crate::math::float::{atan2, hypot, sin, sin_cos};
 use crate::math::taylor::Taylor;
 
-/// A flange tilted by no more than this (radians) stands upright; so does the direction of a motion that tilts it by
-/// no more than this part of it.
+/// A flange tilted by no more than this (radians) stands upright; so does one in a motion that tilts it by no more than
+/// this part of its turn, or of its way over the arm's reach.
 const UPRIGHT: f64 = 1e-9;
 
 const KINDS: [JointKind; 4] =
@@ -137,6 +137,41 @@ impl ScaraArm {
         Ok(found)
     }
 
+    /// The joint positions within the limits that are bent to a side, each joint in the turn nearest to `reference`. A stretched
+    /// or folded arm is bent to both.
+    ///
+    /// # Errors
+    /// As [`ScaraArm::inverse`], and [`InverseError::PositionLimit`] of this side.
+    pub fn inverse_bent(
+        &self,
+        base_from_flange: &Pose,
+        side: Handedness,
+        reference: &[f64; 4],
+    ) -> Result<[f64; 4], InverseError> {
+        let all = self.inverse(base_from_flange, reference)?;
+        let [.., last] = all.as_slice() else { return Err(InverseError::NotFinite) };
+        let bent = all.as_slice().iter().find(|solution| solution.handedness == side).unwrap_or(last);
+        let within: Branches<[f64; 4], 1> = self.limits.branches_within(&[bent.q], reference, &KINDS)?;
+        Ok(within.as_slice().first().copied().unwrap_or(bent.q))
+    }
+
+    /// To which side the arm is bent at joint positions `q`; right where it is stretched or folded.
+    #[must_use]
+    pub fn handedness(&self, q: &[f64; 4]) -> Handedness {
+        if sin(q[1]) >= 0.0 { Handedness::Right } else { Handedness::Left }
+    }
+
+    /// The flange's orientation in the base frame that the arm can take and that lies nearest to this one.
+    #[must_use]
+    pub fn upright(&self, base_from_flange: &Rotation) -> Rotation {
+        let (base_from_shoulder, last_from_flange) =
+            (&self.geometry.base_from_shoulder.rotation, &self.geometry.last_from_flange.rotation);
+        let h = (base_from_shoulder.inverse() * base_from_flange * last_from_flange.inverse()).into_inner();
+        let (sin_half, cos_half) = sin_cos(atan2(h.k, h.w));
+        let turn = Rotation::new_unchecked(nalgebra::Quaternion::new(cos_half, 0.0, 0.0, sin_half));
+        base_from_shoulder * turn * last_from_flange
+    }
+
     /// Distance from the elbow's singularity at joint positions `q`: |sin q₂|, zero stretched and folded.
     #[must_use]
     pub fn elbow_distance(&self, q: &[f64; 4]) -> f64 {
@@ -197,7 +232,9 @@ impl Kinematics<4> for ScaraArm {
         let jet = base_from_flange.seen_from(&self.shoulder_from_base).attached(&self.flange_from_last);
         let tilting = jet.angular.iter().fold(0.0, |most: f64, w| most.max(hypot(w.x, w.y)));
         let turning = jet.angular.iter().fold(0.0, |most: f64, w| most.max(w.norm()));
-        if tilting > UPRIGHT * turning {
+        // A motion that does not turn has rounding for a turn: what the arm's length makes of it is small beside the rest.
+        let travelling = jet.linear.iter().fold(0.0, |most: f64, v| most.max(v.norm()));
+        if tilting > UPRIGHT * turning.max(travelling / self.links().reach()) {
             return Err(InverseError::NotFollowed { missing: tilting });
         }
         let position = jet.pose.translation.vector;

@@ -1,9 +1,11 @@
 //! Joint motion from finite differences of the recorded commands, against the joints' limits.
 
+use seamline::kinematics::JointKind;
 use serde::Serialize;
 
 use crate::record::info::JointInfo;
 use crate::record::sample::{MAX_JOINTS, Sample};
+use crate::robot::JointUnit;
 
 /// Orders of derivative that are looked at: velocity, acceleration, jerk.
 pub(super) const ORDERS: usize = 3;
@@ -81,10 +83,9 @@ pub struct Peak {
 pub struct JointFigures {
     /// Name of the joint.
     pub name: String,
-    /// Least commanded position.
-    pub position_min_deg: f64,
-    /// Greatest commanded position.
-    pub position_max_deg: f64,
+    /// Where it was, and how far off.
+    #[serde(flatten)]
+    pub travel: Travel,
     /// How much of the range is used: 0 at its middle, 1 at either limit.
     pub position: f64,
     /// Greatest velocity.
@@ -93,8 +94,31 @@ pub struct JointFigures {
     pub acceleration: Peak,
     /// Greatest jerk.
     pub jerk: Peak,
-    /// Greatest distance between command and measurement.
-    pub following_error_max_deg: f64,
+}
+
+/// Least and greatest commanded position, and the greatest distance between command and measurement, in the unit of the joint.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(untagged)]
+#[allow(missing_docs, reason = "the names say it, and they are those of `summary.json`")]
+pub enum Travel {
+    /// Of a joint that turns.
+    Turning { position_min_deg: f64, position_max_deg: f64, following_error_max_deg: f64 },
+    /// Of a joint that slides.
+    Sliding { position_min_mm: f64, position_max_mm: f64, following_error_max_mm: f64 },
+}
+
+impl Travel {
+    fn new(kind: JointKind, [low, high]: [f64; 2], following: f64) -> Self {
+        let [low, high, off] = [low, high, following].map(|si| si * JointUnit::of(kind).per_si);
+        match kind {
+            JointKind::Revolute => {
+                Self::Turning { position_min_deg: low, position_max_deg: high, following_error_max_deg: off }
+            }
+            JointKind::Prismatic => {
+                Self::Sliding { position_min_mm: low, position_max_mm: high, following_error_max_mm: off }
+            }
+        }
+    }
 }
 
 /// Collects the figures of all joints.
@@ -150,13 +174,11 @@ impl JointWatch {
             let (middle, half) = (0.5 * (least + greatest), 0.5 * (greatest - least));
             JointFigures {
                 name: joint.name.clone(),
-                position_min_deg: low.to_degrees(),
-                position_max_deg: high.to_degrees(),
+                travel: Travel::new(joint.kind, self.range[index], self.following[index]),
                 position: (low - middle).abs().max((high - middle).abs()) / half,
                 velocity: peak(0),
                 acceleration: peak(1),
                 jerk: peak(2),
-                following_error_max_deg: self.following[index].to_degrees(),
             }
         };
         self.joints.iter().enumerate().map(figures).collect()

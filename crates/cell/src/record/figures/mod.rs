@@ -5,7 +5,7 @@ mod deviation;
 mod joints;
 mod moves;
 
-pub use joints::{JointFigures, Peak};
+pub use joints::{JointFigures, Peak, Travel};
 pub use moves::MoveFigures;
 
 use serde::Serialize;

@@ -115,11 +115,15 @@ fn joint_maxima_of_an_s_curve() {
             close(joint.jerk, curve.jerk(), info.jerk);
         }
         let [first, second] = &findings.joints[..] else { panic!() };
-        assert!((first.position_max_deg - 0.6f64.to_degrees()).abs() < 1e-9);
-        assert!((second.position_min_deg + 0.5f64.to_degrees()).abs() < 1e-9);
+        let Travel::Turning { position_max_deg, .. } = first.travel else { panic!() };
+        assert!((position_max_deg - 0.6f64.to_degrees()).abs() < 1e-9);
+        let Travel::Turning { position_min_deg, following_error_max_deg, .. } = second.travel else {
+            panic!()
+        };
+        assert!((position_min_deg + 0.5f64.to_degrees()).abs() < 1e-9);
         // Joint 2 may go from −2 to 4: 1 is the middle, −0.5 half of the way to the lower limit.
         assert!((second.position - 0.5).abs() < 1e-9);
-        assert!((second.following_error_max_deg - 0.01f64.to_degrees()).abs() < 1e-9);
+        assert!((following_error_max_deg - 0.01f64.to_degrees()).abs() < 1e-9);
         // The plots keep the same peaks.
         let plotted = |trace: &[(f64, f64)]| trace.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
         let traces = &findings.plot.joints[1];

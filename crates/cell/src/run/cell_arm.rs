@@ -1,0 +1,38 @@
+//! Checks and runs on the arm of a cell, whichever kind it is.
+
+use super::check::{CheckReport, check};
+use super::error::RunError;
+use super::session::{Progress, RunOptions, RunReport, run};
+use crate::cell::Cell;
+use crate::job::JobSet;
+use crate::plan::CellArm;
+
+impl CellArm {
+    /// [`check()`] with this arm.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn check(&self, jobs: &JobSet, cell: &Cell) -> Result<CheckReport, RunError> {
+        match self {
+            Self::SixAxis(arm) => check(jobs, cell, &**arm),
+            Self::Scara(arm) => check(jobs, cell, &**arm),
+        }
+    }
+
+    /// [`run()`] with this arm.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn run(
+        &self,
+        jobs: &JobSet,
+        cell: &Cell,
+        options: &RunOptions,
+        progress: impl FnMut(Progress),
+    ) -> Result<RunReport, RunError> {
+        match self {
+            Self::SixAxis(arm) => run(jobs, cell, arm, options, progress),
+            Self::Scara(arm) => run(jobs, cell, arm, options, progress),
+        }
+    }
+}
