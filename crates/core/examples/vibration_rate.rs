@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::hint::black_box;
 use std::time::Instant;
 
-use seamline::vibration::{Corner, Mode, Prefilter, PrefilterStage, Ramp};
+use seamline::vibration::{Corner, Mode, Prefilter, PrefilterStage, Ramp, StageEntry};
 
 /// The least mean of several rounds, in nanoseconds a call: other work on the machine only adds.
 fn nanoseconds(mut call: impl FnMut(u32)) -> f64 {
@@ -26,7 +26,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mode = Mode::try_new(TAU * 6.34, 0.022)?;
     println!("stage, 6 axes, 1 kHz, moving:");
     for prefilter in Prefilter::ALL {
-        let mut stage = PrefilterStage::<6, 512>::try_new(&prefilter.kernel(&mode)?, 1e-3, &[0.0; 6])?;
+        let ring = [StageEntry::ZERO; 512];
+        let mut stage = PrefilterStage::try_new(ring, &prefilter.kernel(&mode)?, 1e-3, &[0.0; 6])?;
         let time = nanoseconds(|n| {
             black_box(stage.update(&[f64::from(n) * 1e-6; 6]));
         });

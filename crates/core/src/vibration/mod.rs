@@ -26,4 +26,4 @@ pub use kernel::{Impulse, Kernel, KernelError, MAX_IMPULSES, MAX_RECTANGLES};
 pub use mode::{Mode, ModeError};
 pub use prefilter::Prefilter;
 pub use ramp::{MAX_PIECES, Ramp, RampError, RampPiece};
-pub use stage::{PrefilterStage, StageError};
+pub use stage::{PrefilterStage, Signal, StageEntry, StageError, stage_entries};

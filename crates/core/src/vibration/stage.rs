@@ -13,7 +13,11 @@
 //! | a constant | passes, bit by bit once it has stood for the kernel's length |
 //!
 //! **No drift.** P starts anew each time the ring is full (a *lap*), and a look into the lap before subtracts that lap's whole. So P never
-//! exceeds RING · |x|, and rounding stays below RING · 2⁻⁵³ · |x| however long the stage runs.
+//! exceeds R · |x| with R the ring's length, and rounding stays below R · 2⁻⁵³ · |x| however long the stage runs.
+//!
+//! **Limits pass.** What comes out is Σ cₘ xₙ₋ₘ over past commands, with cₘ > 0 and Σ cₘ = 1, since a kernel's weights are positive. Any
+//! differences of the output are the same mean of those of the input: what bounds the position, velocity, acceleration and jerk of
+//! the commands that go in bounds what comes out.
 
 use core::fmt;
 
@@ -23,17 +27,45 @@ use crate::math::float;
 /// Two ends of the rectangle under each impulse.
 const MAX_TAPS: usize = 2 * MAX_IMPULSES;
 
-/// A prefilter on `N` axes, with room for kernels of up to `RING − 1` cycles; `RING` is a power of two.
+/// What a stage filters: numbers that can be weighted and added.
+pub trait Signal: Copy + PartialEq {
+    /// Nothing.
+    const ZERO: Self;
+
+    /// Adds a share of another one.
+    fn add(&mut self, share: f64, other: &Self);
+}
+
+impl<const N: usize> Signal for [f64; N] {
+    const ZERO: Self = [0.0; N];
+
+    #[inline]
+    fn add(&mut self, share: f64, other: &Self) {
+        for axis in 0..N {
+            self[axis] += share * other[axis];
+        }
+    }
+}
+
+/// A prefilter on a signal, for example on the positions of `N` axes: `[f64; N]`.
 ///
-/// The kernel has one rectangle at most; several modes with FIR take one stage each, one after the other. Commands are finite numbers: another
-/// one would stay inside until [`PrefilterStage::reset`].
+/// `M` is the ring's memory, as long as [`stage_entries`] says or longer: an array, a slice, or what an allocator gave. The kernel has one
+/// rectangle at most; several modes with FIR take one stage each, one after the other. Commands are finite numbers: another one would stay
+/// inside until [`PrefilterStage::reset`].
 #[derive(Debug, Clone)]
-pub struct PrefilterStage<const N: usize, const RING: usize> {
-    ring: [Entry<N>; RING],
+pub struct PrefilterStage<S, M> {
+    ring: M,
+    /// Length of the ring's part in use, a power of two, less one.
+    mask: usize,
     /// Where the newest command lies.
     now: usize,
+    /// Cycles since the reset, up to one more than `length`: before it there was only the origin.
+    age: usize,
+    /// Where the stage was reset. The ring holds differences from it.
+    origin: S,
+    last: S,
     /// ∫ of the lap before, in cycles.
-    lap: [f64; N],
+    lap: S,
     taps: [Tap; MAX_TAPS],
     tap_count: usize,
     /// Cycles until a command has come out whole.
@@ -42,11 +74,28 @@ pub struct PrefilterStage<const N: usize, const RING: usize> {
     constant: usize,
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Entry<const N: usize> {
-    command: [f64; N],
+/// One cycle in a stage's memory.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StageEntry<S> {
+    command: S,
     /// ∫ of the command since the lap's start, in cycles.
-    integral: [f64; N],
+    integral: S,
+}
+
+impl<S: Signal> StageEntry<S> {
+    /// What the memory of a stage may hold at first; it need not.
+    pub const ZERO: Self = Self { command: S::ZERO, integral: S::ZERO };
+}
+
+/// How many entries the memory of a stage needs: a power of two, and one more than the cycles that the kernel takes.
+#[must_use]
+pub fn stage_entries(kernel: &Kernel, period: f64) -> usize {
+    ((cycles(kernel, period) as usize).saturating_add(1)).next_power_of_two().max(2)
+}
+
+/// Cycles until a command has come out whole.
+fn cycles(kernel: &Kernel, period: f64) -> f64 {
+    float::ceil(kernel.length() / period)
 }
 
 /// A look into the past: `back` cycles, then a fraction on. What it adds is a weighted sum of the ring's entry there and the next command.
@@ -96,17 +145,12 @@ impl fmt::Display for StageError {
 
 impl core::error::Error for StageError {}
 
-impl<const N: usize, const RING: usize> PrefilterStage<N, RING> {
-    const MASK: usize = {
-        assert!(RING.is_power_of_two() && RING >= 2);
-        RING - 1
-    };
-
-    /// A stage at rest at a position, for commands every `period` seconds.
+impl<S: Signal, M: AsRef<[StageEntry<S>]> + AsMut<[StageEntry<S>]>> PrefilterStage<S, M> {
+    /// A stage at rest at a command, for commands every `period` seconds.
     ///
     /// # Errors
-    /// A bad period, a kernel longer than the ring or with more than one rectangle.
-    pub fn try_new(kernel: &Kernel, period: f64, position: &[f64; N]) -> Result<Self, StageError> {
+    /// A bad period, a kernel too long for the memory or with more than one rectangle.
+    pub fn try_new(ring: M, kernel: &Kernel, period: f64, command: &S) -> Result<Self, StageError> {
         if !(period > 0.0 && period.is_finite()) {
             return Err(StageError::Period { period });
         }
@@ -114,54 +158,63 @@ impl<const N: usize, const RING: usize> PrefilterStage<N, RING> {
         if count > 1 {
             return Err(StageError::Rectangles { count });
         }
-        let cycles = float::ceil(kernel.length() / period);
-        // The tap of the longest delay looks at its entry and the next.
-        let room = RING - 1;
-        if cycles > room as f64 {
+        let cycles = cycles(kernel, period);
+        // The longest part that is a power of two; the tap of the longest delay looks at its entry and the next.
+        let mask = (ring.as_ref().len() / 2 + 1).next_power_of_two() - 1;
+        let room = if ring.as_ref().len() > mask { mask } else { 0 };
+        if cycles > room as f64 || room == 0 {
             return Err(StageError::TooLong { cycles, room });
         }
         let mut stage = Self {
-            ring: [Entry { command: [0.0; N], integral: [0.0; N] }; RING],
+            ring,
+            mask,
             now: 0,
-            lap: [0.0; N],
+            age: 0,
+            origin: *command,
+            last: *command,
+            lap: S::ZERO,
             taps: [Tap::default(); MAX_TAPS],
             tap_count: 0,
             length: cycles as usize,
             constant: 0,
         };
         stage.lay_taps(kernel, period);
-        stage.reset(position);
+        stage.reset(command);
         Ok(stage)
     }
 
-    /// At rest at a position from now on: what was still inside is dropped. Costs a pass over the ring.
-    pub fn reset(&mut self, position: &[f64; N]) {
-        for (index, entry) in self.ring.iter_mut().enumerate() {
-            *entry = Entry { command: *position, integral: position.map(|x| x * index as f64) };
-        }
-        self.lap = position.map(|x| x * RING as f64);
-        self.now = 0;
-        self.constant = self.length;
+    /// At rest at a command from now on: what was still inside is dropped. Costs no more than an update.
+    pub fn reset(&mut self, command: &S) {
+        (self.origin, self.last, self.lap) = (*command, *command, S::ZERO);
+        (self.now, self.age, self.constant) = (0, 0, self.length);
+        self.put(StageEntry::ZERO);
     }
 
     /// One cycle: takes the command of this instant, gives the prefiltered one.
     #[inline]
     #[must_use]
-    pub fn update(&mut self, command: &[f64; N]) -> [f64; N] {
+    pub fn update(&mut self, command: &S) -> S {
         self.take(command);
         if self.is_drained() {
             // What the sum below gives but for rounding.
             return *command;
         }
-        let mut output = [0.0; N];
+        let mut output = self.origin;
         for tap in self.taps.get(..self.tap_count).unwrap_or_default() {
-            let at = self.now.wrapping_sub(tap.back) & Self::MASK;
-            let lap = if tap.back > self.now { tap.integral } else { 0.0 };
-            let (entry, next) = (&self.ring[at], &self.ring[(at + 1) & Self::MASK].command);
-            for axis in 0..N {
-                output[axis] += tap.integral * entry.integral[axis] - lap * self.lap[axis]
-                    + tap.here * entry.command[axis]
-                    + tap.next * next[axis];
+            if tap.back > self.age {
+                // Nothing but the origin.
+                continue;
+            }
+            let entry = self.back(tap.back);
+            if tap.integral != 0.0 {
+                output.add(tap.integral, &entry.integral);
+                if tap.back > self.now {
+                    output.add(-tap.integral, &self.lap);
+                }
+            }
+            output.add(tap.here, &entry.command);
+            if tap.next != 0.0 {
+                output.add(tap.next, &self.back(tap.back.wrapping_sub(1)).command);
             }
         }
         output
@@ -181,22 +234,33 @@ impl<const N: usize, const RING: usize> PrefilterStage<N, RING> {
 
     /// The command that went in last: where the output will come to rest.
     #[must_use]
-    pub fn command(&self) -> &[f64; N] {
-        &self.ring[self.now & Self::MASK].command
+    pub fn command(&self) -> &S {
+        &self.last
     }
 
-    fn take(&mut self, command: &[f64; N]) {
-        let Entry { command: last, integral } = self.ring[self.now & Self::MASK];
-        let area = core::array::from_fn(|axis| integral[axis] + 0.5 * (last[axis] + command[axis]));
-        self.now = (self.now + 1) & Self::MASK;
-        let integral = if self.now == 0 {
-            self.lap = area;
-            [0.0; N]
-        } else {
-            area
-        };
-        self.ring[self.now & Self::MASK] = Entry { command: *command, integral };
-        self.constant = if last == *command { (self.constant + 1).min(self.length) } else { 0 };
+    fn take(&mut self, command: &S) {
+        let StageEntry { command: before, mut integral } = *self.back(0);
+        let mut difference = *command;
+        difference.add(-1.0, &self.origin);
+        integral.add(0.5, &before);
+        integral.add(0.5, &difference);
+        self.now = (self.now + 1) & self.mask;
+        if self.now == 0 {
+            self.lap = core::mem::replace(&mut integral, S::ZERO);
+        }
+        self.put(StageEntry { command: difference, integral });
+        self.age = (self.age + 1).min(self.length + 1);
+        self.constant = if self.last == *command { (self.constant + 1).min(self.length) } else { 0 };
+        self.last = *command;
+    }
+
+    /// The entry so many cycles ago.
+    fn back(&self, cycles: usize) -> &StageEntry<S> {
+        &self.ring.as_ref()[self.now.wrapping_sub(cycles) & self.mask]
+    }
+
+    fn put(&mut self, entry: StageEntry<S>) {
+        self.ring.as_mut()[self.now & self.mask] = entry;
     }
 
     fn lay_taps(&mut self, kernel: &Kernel, period: f64) {

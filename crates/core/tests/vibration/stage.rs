@@ -1,10 +1,17 @@
 //! The streaming stage against the convolution by its definition.
 
-use seamline::vibration::{Kernel, Mode, Prefilter, PrefilterStage, StageError};
+use seamline::vibration::{Kernel, Mode, Prefilter, PrefilterStage, StageEntry, StageError, stage_entries};
 
 use crate::random::Random;
 
 const PERIOD: f64 = 1e-3;
+
+type Stage<const N: usize> = PrefilterStage<[f64; N], Vec<StageEntry<[f64; N]>>>;
+
+fn stage<const N: usize>(kernel: &Kernel, start: [f64; N]) -> Stage<N> {
+    let ring = vec![StageEntry::ZERO; stage_entries(kernel, PERIOD)];
+    PrefilterStage::try_new(ring, kernel, PERIOD, &start).expect("a ring that is long enough")
+}
 
 fn mode(omega: f64) -> Mode {
     Mode::try_new(omega, 0.022).expect("a mode")
@@ -66,7 +73,7 @@ fn it_is_the_convolution_at_every_cycle() {
         let start = random.uniform(-2.0, 2.0);
         // More than four laps of the ring.
         let samples = random_move(&mut random, start, 2300);
-        let mut stage = PrefilterStage::<1, 512>::try_new(&kernel, PERIOD, &[start]).unwrap();
+        let mut stage = stage(&kernel, [start]);
         for (cycle, &sample) in samples.iter().enumerate() {
             let [output] = stage.update(&[sample]);
             if cycle % 7 == 0 {
@@ -80,7 +87,7 @@ fn it_is_the_convolution_at_every_cycle() {
 #[test]
 fn a_constant_rate_passes_and_what_is_inside_runs_out() {
     let kernel = Prefilter::FirZvd.kernel(&mode(39.84)).unwrap();
-    let mut stage = PrefilterStage::<6, 512>::try_new(&kernel, PERIOD, &[1.0; 6]).unwrap();
+    let mut stage = stage(&kernel, [1.0; 6]);
     assert!(stage.is_drained());
     let rate = [1e-4, -2e-4, 3e-5, 0.0, 1e-6, -1e-3];
     let at = |n: usize| rate.map(|r| 1.0 + r * n as f64);
@@ -119,7 +126,7 @@ fn a_constant_rate_passes_and_what_is_inside_runs_out() {
 #[ignore = "long"]
 fn it_does_not_drift() {
     let kernel = Prefilter::FirZv.kernel(&mode(39.84)).unwrap();
-    let mut stage = PrefilterStage::<1, 512>::try_new(&kernel, PERIOD, &[1.0]).unwrap();
+    let mut stage = stage(&kernel, [1.0]);
     let mut greatest = 0.0_f64;
     for n in 0..10_000_000_u32 {
         let angle = f64::from(n) * 1e-3;
@@ -138,11 +145,11 @@ fn it_does_not_drift() {
 fn stages_follow_each_other_for_several_modes() {
     let modes = [mode(40.0), mode(90.0)];
     let [first, second] = modes.map(|mode| Prefilter::FirZvd.kernel(&mode).unwrap());
-    let mut a = PrefilterStage::<1, 512>::try_new(&first, PERIOD, &[0.0]).unwrap();
-    let mut b = PrefilterStage::<1, 512>::try_new(&second, PERIOD, &[0.0]).unwrap();
+    let mut a = stage(&first, [0.0]);
+    let mut b = stage(&second, [0.0]);
     let both = first.convolve(&second).unwrap();
     let ramp = seamline::vibration::Ramp::from_kernel(&both).unwrap();
-    let refused = PrefilterStage::<1, 512>::try_new(&both, PERIOD, &[0.0]);
+    let refused = PrefilterStage::try_new([StageEntry::ZERO; 512], &both, PERIOD, &[0.0]);
     assert!(matches!(refused, Err(StageError::Rectangles { count: 2 })));
     for n in 0..1500_u32 {
         let time = f64::from(n) * PERIOD;
@@ -152,15 +159,66 @@ fn stages_follow_each_other_for_several_modes() {
     }
 }
 
+/// A reset in mid-motion, at any place of the ring: from there on the stage is as good as a new one.
+#[test]
+fn after_a_reset_nothing_of_before_comes_out() {
+    let mut random = Random(9);
+    for case in 0..60 {
+        let kernel =
+            Prefilter::ALL[case % Prefilter::ALL.len()].kernel(&mode(random.log_uniform(35.0, 400.0)));
+        let kernel = kernel.unwrap();
+        let mut used = stage(&kernel, [random.uniform(-2.0, 2.0)]);
+        for sample in random_move(&mut random, 0.3, 100 + 37 * case) {
+            let _ = used.update(&[sample]);
+        }
+        let start = random.uniform(-2.0, 2.0);
+        used.reset(&[start]);
+        assert!(used.is_drained());
+        let mut new = stage(&kernel, [start]);
+        for sample in random_move(&mut random, start, 1500) {
+            assert_eq!(used.update(&[sample]), new.update(&[sample]));
+        }
+    }
+}
+
+/// The differences of a move, up to the third, bound those of what comes out of two stages.
+#[test]
+fn limits_of_the_command_hold_for_what_comes_out() {
+    let mut random = Random(11);
+    let differences = |samples: &[f64]| -> [f64; 4] {
+        let third = |w: &[f64]| w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0];
+        let greatest = |width: usize, of: &dyn Fn(&[f64]) -> f64| {
+            samples.windows(width).map(|w| of(w).abs()).fold(0.0, f64::max)
+        };
+        let second = |w: &[f64]| w[2] - 2.0 * w[1] + w[0];
+        [greatest(1, &|w| w[0]), greatest(2, &|w| w[1] - w[0]), greatest(3, &second), greatest(4, &third)]
+    };
+    for case in 0..60 {
+        let of = |omega: f64| Prefilter::ALL[case % Prefilter::ALL.len()].kernel(&mode(omega)).unwrap();
+        let kernels = [of(random.log_uniform(35.0, 400.0)), of(random.log_uniform(35.0, 400.0))];
+        let [mut first, mut second] = kernels.each_ref().map(|kernel| stage(kernel, [0.7]));
+        let mut samples = random_move(&mut random, 0.7, 2000);
+        samples.splice(0..0, [0.7; 3]);
+        let output: Vec<f64> = samples.iter().map(|&x| second.update(&first.update(&[x]))[0]).collect();
+        let (before, after) = (differences(&samples), differences(&output));
+        for order in 0..4 {
+            assert!(after[order] <= before[order] + 1e-13, "case {case}: {after:?} of {before:?}");
+        }
+    }
+}
+
 #[test]
 fn what_does_not_fit_is_refused() {
     let kernel = Prefilter::FirZvd.kernel(&mode(10.0)).unwrap();
-    let stage = PrefilterStage::<1, 256>::try_new(&kernel, PERIOD, &[0.0]);
-    assert!(matches!(stage, Err(StageError::TooLong { room: 255, .. })));
-    let stage = PrefilterStage::<1, 256>::try_new(&Kernel::IDENTITY, 0.0, &[0.0]);
-    assert!(matches!(stage, Err(StageError::Period { .. })));
-    let mut stage = PrefilterStage::<1, 2>::try_new(&Kernel::IDENTITY, PERIOD, &[0.0]).unwrap();
+    let short =
+        |kernel: &Kernel, period| PrefilterStage::try_new([StageEntry::ZERO; 300], kernel, period, &[0.0]);
+    assert!(matches!(short(&kernel, PERIOD), Err(StageError::TooLong { room: 255, .. })));
+    assert!(matches!(short(&Kernel::IDENTITY, 0.0), Err(StageError::Period { .. })));
+    let none: &mut [StageEntry<[f64; 1]>] = &mut [];
+    let refused = PrefilterStage::try_new(none, &Kernel::IDENTITY, PERIOD, &[0.0]);
+    assert!(matches!(refused, Err(StageError::TooLong { room: 0, .. })));
+    let mut least = stage(&Kernel::IDENTITY, [0.0]);
     for n in 0..9 {
-        assert_eq!(stage.update(&[f64::from(n)]), [f64::from(n)]);
+        assert_eq!(least.update(&[f64::from(n)]), [f64::from(n)]);
     }
 }
