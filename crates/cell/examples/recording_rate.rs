@@ -33,7 +33,15 @@ fn main() -> std::io::Result<()> {
     let start = Instant::now();
     let (mut sender, recorder) = Recorder::start(&file, &run)?;
     let kind = SegmentKind::Path(path);
-    recorder.segment(SegmentInfo { segment: 1, line: 1, kind, speed: None, arc: true, constant_part: None });
+    recorder.segment(SegmentInfo {
+        segment: 1,
+        line: 1,
+        kind,
+        speed: None,
+        arc: true,
+        constant_part: None,
+        rounded: [0.0; 2],
+    });
     for cycle in 0..ROWS {
         let s = f64::from(cycle) / f64::from(ROWS);
         let mut sample = Sample::at_rest();

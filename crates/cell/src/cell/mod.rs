@@ -21,6 +21,7 @@ mod sensor;
 mod simulation;
 #[cfg(test)]
 mod tests;
+mod vibration;
 mod welding;
 
 use std::path::Path;
@@ -29,7 +30,7 @@ pub use error::{CellError, Problem, Suggestion};
 pub use frames::{Tool, UserFrame};
 pub use io::{Io, ScriptedInput, UnmetWait, UnscriptedInput};
 pub use job_rules::{JobRules, SpeedUnit, WeldSpeedRule};
-pub use motion::{CartesianLimits, Cycle, DriveBackend, FlexibleMode, Safety};
+pub use motion::{CartesianLimits, Cycle, DriveBackend, Safety};
 pub use nearest::nearest;
 pub use robot::{
     BuiltInRobot, DhConvention, DhRow, DhTable, JOINTS_MAX, Joint, JointKind, OpwParameters, Robot,
@@ -37,6 +38,7 @@ pub use robot::{
 };
 pub use sensor::{LostSeam, SeamFilter, Sensor};
 pub use simulation::{LaserErrors, Simulation};
+pub use vibration::{FlexibleMode, Vibration, VibrationError};
 pub use welding::{ArcEnd, ArcPolicy, ArcStart, Voltage, Weave, WeavePattern, WeaveRate, WeaveSide};
 
 use document::Document;
@@ -72,8 +74,8 @@ pub struct Cell {
     pub arc: ArcPolicy,
     /// The seam sensor.
     pub sensor: Sensor,
-    /// Vibrations of the arm that prefilters take out; none by default.
-    pub flexible_modes: Vec<FlexibleMode>,
+    /// Vibrations of the arm, and the prefilters that take them out; none by default.
+    pub vibration: Vibration,
     /// Inputs.
     pub io: Io,
     /// The control cycle.
@@ -145,9 +147,10 @@ impl Cell {
             weaves: numbered(&mut root, "weave", 1..=9999, Weave::read)?,
             arc: ArcPolicy::read(root.section("arc")?)?,
             sensor: Sensor::read(root.section("sensor")?)?,
-            flexible_modes: numbered(&mut root, "flexible_mode", 1..=9, |_, table| {
-                FlexibleMode::read(table)
-            })?,
+            vibration: Vibration::read(
+                numbered(&mut root, "flexible_mode", 1..=9, |_, table| FlexibleMode::read(table))?,
+                root.section("vibration")?,
+            )?,
             io: Io::read(root.section("io")?)?,
             cycle: Cycle::read(root.section("cycle")?)?,
             safety: Safety::read(root.section("safety")?)?,

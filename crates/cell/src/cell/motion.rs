@@ -1,4 +1,4 @@
-//! Limits of the tool's motion, the cycle, safety, flexible modes and the drive back end.
+//! Limits of the tool's motion, the cycle, safety and the drive back end.
 
 use seamline::geometry::Vector3;
 
@@ -81,26 +81,6 @@ impl Safety {
         }
         section.finish()?;
         Ok(Self { workspace_min: min.into(), workspace_max: max.into() })
-    }
-}
-
-/// A vibration of the arm.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FlexibleMode {
-    /// Undamped natural frequency in Hz.
-    pub frequency_hz: f64,
-    /// Damping ratio ζ, 0 ≤ ζ < 1.
-    pub damping: f64,
-}
-
-impl FlexibleMode {
-    pub(super) fn read(mut table: Section<'_>) -> Result<Self, CellError> {
-        let mode = Self {
-            frequency_hz: table.number("frequency_hz", Unit::Plain, 0.1..=500.0)?,
-            damping: table.number("damping", Unit::Plain, 0.0..=0.99)?,
-        };
-        table.finish()?;
-        Ok(mode)
     }
 }
 

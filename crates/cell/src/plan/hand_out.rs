@@ -12,6 +12,7 @@ use super::planner::{Planned, Planner};
 use super::remark::{Remarks, path_problem};
 use super::route::Route;
 use super::run::{Link, Piece, Sight, Stops};
+use super::smear;
 use super::suggest::Trouble;
 use super::timing::{Course, JointPath as _, Timing, TimingError, TimingLimits, time_path};
 use crate::job::{Action, Step};
@@ -64,10 +65,14 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     fn hand_out(&mut self, sight: &Sight, out: &mut Vec<Planned<N>>) -> Result<bool, PlanError> {
         let (route, stretches) = self.run.route(sight.to);
         let (arm, tool, start) = (self.arm, self.tool.flange_from_tcp, self.joints);
-        let mut joints = match PathJoints::follow(&arm.kinematics, route.clone(), &tool, &start) {
+        let (ahead, _) = self.run.route(self.run.past_corner(sight.to + self.run.reach()));
+        let mut joints = match PathJoints::follow(&arm.kinematics, ahead.clone(), &tool, &start) {
             Ok(joints) => joints,
-            Err((s, error)) => return Err(self.fault(&route, s, &self.follow_reason(&error))),
+            Err((s, error)) => return Err(self.fault(&ahead, s, &self.follow_reason(&error))),
         };
+        let caps = self.caps(&mut joints, sight.to);
+        let stretches = smear::slowed(&stretches, &caps, self.run.speed);
+        let mut joints = joints.over(route.clone());
         let course = Course { stretches: &stretches, start: self.run.speed, open: sight.open };
         let timing = match time_path(&mut joints, &self.timing_limits(), &course) {
             Ok(timing) => timing,
@@ -80,9 +85,11 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let (settled, rest) = timing.pieces().split_at(timing.settled());
         let Some(last) = settled.last().map(TimingPiece::end) else { return Ok(false) };
         let end = if sight.open { last.position } else { route.length() };
-        let remarks = self.remarks(&route, &timing, end)?;
+        let mut remarks = self.remarks(&route, &timing, end)?;
+        self.remark_caps(&mut remarks, &caps, end)?;
         self.hand_out_up_to(end, !sight.open, settled, &mut joints, &remarks, out);
         self.run.way_to_rest = cut::moved_back(rest, end);
+        self.run.keep_caps(&caps, end);
         Ok(true)
     }
 
@@ -125,10 +132,14 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         planned.notices.extend(notices.iter().cloned());
         if whole && matches!(piece.info.kind, SegmentKind::Path(_)) {
             planned.notices.extend(self.other_configuration(&piece.link, &part.joints));
+            planned.notices.extend(smear::off_weld(&piece));
         }
         planned.commands = self.blocks(&piece, part.timing, from_rest, part.rests);
-        planned.segment = Some(piece.info);
+        planned.segment = Some(smear::lagging(&piece.info, self.run.smear.as_ref()));
         planned.duration = part.timing.iter().map(|piece| piece.duration).sum();
+        if part.rests {
+            planned.duration += self.run_out();
+        }
         out.push(planned);
         out.extend(piece.after.iter().map(Planned::of));
         self.joints = part.joints;

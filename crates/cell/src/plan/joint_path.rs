@@ -82,6 +82,12 @@ impl<'a, const N: usize, K: PlanningArm<N>> PathJoints<'a, N, K> {
         Ok(joints)
     }
 
+    /// The same joints, of a route that is the beginning of the one that was followed.
+    #[must_use]
+    pub fn over(self, route: Route) -> Self {
+        Self { route, ..self }
+    }
+
     fn follow_to(&mut self, at: &mut f64, to: f64) -> Result<(), (f64, FollowError)> {
         let whole = to - *at;
         let mut step = whole;

@@ -17,6 +17,7 @@ mod remark;
 mod resolve;
 mod route;
 mod run;
+mod smear;
 mod speed;
 mod suggest;
 pub mod timing;

@@ -10,6 +10,7 @@ use super::arm::{Arm, PlanningArm};
 use super::error::{PlanError, Problem};
 use super::resolve::{self, Goal, ToolPose, goal};
 use super::run::{Link, Run, Stops};
+use super::smear::Smear;
 use super::speed;
 use super::tool_path;
 use super::workspace;
@@ -80,7 +81,7 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
     /// # Errors
     /// [`Problem::UnknownTool`] where the cell has no tool 0.
     pub fn new(arm: &'a Arm<N, K>, cell: &'a Cell, joints: [f64; N]) -> Result<Self, Problem> {
-        let (tool, run) = (ToolPose::of(cell, 0)?, Run::default());
+        let (tool, run) = (ToolPose::of(cell, 0)?, Run::new(Smear::of(&cell.vibration)));
         Ok(Self { arm, cell, joints, tool, arc: false, segment: 0, run, waiting: VecDeque::new() })
     }
 
@@ -212,6 +213,11 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         Ok(planned)
     }
 
+    /// How long it takes at the end of a move until the prefilters have let all of it through, in seconds.
+    pub(super) fn run_out(&self) -> f64 {
+        self.run.smear.map_or(0.0, |smear| smear.length)
+    }
+
     fn next_segment(&mut self) -> u32 {
         self.segment += 1;
         self.segment
@@ -226,6 +232,7 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             speed: None,
             arc: self.arc,
             constant_part: None,
+            rounded: [0.0; 2],
         });
         planned.commands.push(Command::Dwell { line, segment, duration });
         planned.duration += duration;
@@ -407,8 +414,9 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             speed: None,
             arc: self.arc,
             constant_part: None,
+            rounded: [0.0; 2],
         });
-        planned.duration = trajectory.duration();
+        planned.duration = trajectory.duration() + self.run_out();
         (self.joints, self.tool) = (target, goal.tool);
         Ok(())
     }

@@ -52,7 +52,7 @@ impl Remarks {
         self.texts.iter().find(|(of, _)| *of == index).map_or(&[], |(_, texts)| texts)
     }
 
-    fn add(&mut self, index: usize, text: String) {
+    pub(super) fn add(&mut self, index: usize, text: String) {
         match self.texts.iter_mut().find(|(of, _)| *of == index) {
             Some((_, texts)) => texts.push(text),
             None => self.texts.push((index, vec![text])),
@@ -123,12 +123,17 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         if slowdown.sustainable < speed {
             text += &remedy(path, slowdown, &self.trouble(piece));
         }
-        let policy = &self.cell.arc;
-        let matters = slowdown.speed < speed * (1.0 - policy.speed_tolerance);
-        if piece.info.arc && policy.refuse_slowdown && matters {
+        if self.refuses_slowdown(piece, slowdown.speed) {
             return Err(Problem::WeldSlowdown(text));
         }
         Ok(text)
+    }
+
+    /// Whether the cell refuses a weld that is as slow as this.
+    pub(super) fn refuses_slowdown(&self, piece: &Piece<N>, speed: f64) -> bool {
+        let policy = &self.cell.arc;
+        let matters = speed < piece.limits.speed * (1.0 - policy.speed_tolerance);
+        piece.info.arc && policy.refuse_slowdown && matters
     }
 }
 
@@ -158,7 +163,7 @@ fn remedy<const N: usize, K: PlanningArm<N>>(
 }
 
 /// Unit of length, unit of speed, and the factor from SI to them.
-fn units(path: &Path) -> (&'static str, &'static str, f64) {
+pub(super) fn units(path: &Path) -> (&'static str, &'static str, f64) {
     match path.measure() {
         Measure::Length => ("mm", "mm/s", 1000.0),
         Measure::Angle => ("deg", "deg/s", 1_f64.to_degrees()),

@@ -9,6 +9,7 @@ use seamline::path::{Measure, Path, TimingPiece};
 use super::corner::{SHARE, limits, passing};
 use super::resolve::Goal;
 use super::route::Route;
+use super::smear::{Cap, Smear};
 use super::timing::{PathLimits, Stretch};
 use crate::job::{Location, Step};
 use crate::record::{SegmentInfo, SegmentKind};
@@ -49,6 +50,10 @@ pub(super) struct Piece<const N: usize> {
     pub(super) begun: bool,
     /// Somewhere on it the speed is below the programmed one.
     slowed: bool,
+    /// How far prefilters may take the tool off it, in metres.
+    pub(super) slack: f64,
+    /// How far they do, as far as it has been looked at.
+    pub(super) off: f64,
     /// Steps that take no time, done when the piece is.
     pub(super) after: Vec<Step>,
 }
@@ -65,6 +70,10 @@ pub(super) struct Sight {
 #[derive(Debug, Clone)]
 pub(super) struct Run<const N: usize> {
     pieces: VecDeque<Piece<N>>,
+    /// What prefilters do to it.
+    pub(super) smear: Option<Smear>,
+    /// Speeds not to pass on account of places that are handed over.
+    pub(super) caps: Vec<Cap>,
     /// Speed at its start, where there is no acceleration.
     pub(super) speed: f64,
     /// How it would come to rest from there, as planned when less of it was known.
@@ -74,12 +83,6 @@ pub(super) struct Run<const N: usize> {
 /// Why a move cannot be run on to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Stops(pub(super) &'static str);
-
-impl<const N: usize> Default for Run<N> {
-    fn default() -> Self {
-        Self { pieces: VecDeque::new(), speed: 0.0, way_to_rest: Vec::new() }
-    }
-}
 
 impl<const N: usize> Link<N> {
     pub(super) fn at(&self) -> &Location {
@@ -95,6 +98,7 @@ impl<const N: usize> Link<N> {
             speed: Some(self.limits.speed),
             arc: self.arc,
             constant_part: None,
+            rounded: [0.0; 2],
         }
     }
 
@@ -105,6 +109,11 @@ impl<const N: usize> Link<N> {
 }
 
 impl<const N: usize> Run<N> {
+    /// Empty.
+    pub(super) fn new(smear: Option<Smear>) -> Self {
+        Self { pieces: VecDeque::new(), smear, caps: Vec::new(), speed: 0.0, way_to_rest: Vec::new() }
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.pieces.is_empty()
     }
@@ -134,25 +143,36 @@ impl<const N: usize> Run<N> {
         };
         let lengths = [last.link.path.length(), link.path.length()];
         let speed = last.limits.speed.max(link.limits.speed);
-        let error = last.link.pass.unwrap_or(0.0);
-        let Some(blend) = passing([&last.path, &link.path], lengths, speed, error)? else {
+        let permitted = last.link.pass.unwrap_or(0.0);
+        let blend = |error| passing([&last.path, &link.path], lengths, speed, error);
+        let Some(mut corner) = blend(permitted)? else {
             self.add(link, link.path, 0.0, segment);
             return Ok(());
         };
-        last.path = blend.before;
+        if let Some(smear) = self.smear {
+            let at_speed = limits(&corner, &last.limits, &link.limits).speed;
+            let shape = corner.error * corner.greatest_curvature;
+            corner = blend(smear.blend_error(permitted, shape, at_speed))?.unwrap_or(corner);
+        }
+        last.path = corner.before;
+        last.info.rounded[1] = rounded(corner.trims[0], last.limits.speed, self.smear);
         *segment += 1;
-        let corner = last.corner(&blend.path, limits(&blend, &last.limits, &link.limits), *segment);
-        self.pieces.push_back(corner);
-        self.add(link, blend.after, blend.trims[1], segment);
+        let limits = limits(&corner, &last.limits, &link.limits);
+        let piece = Piece { slack: permitted - corner.error, ..last.corner(&corner.path, limits, *segment) };
+        self.pieces.push_back(piece);
+        self.add(link, corner.after, corner.trims[1], segment);
         Ok(())
     }
 
     fn add(&mut self, link: &Link<N>, path: Path, offset: f64, segment: &mut u32) {
         *segment += 1;
-        let (info, limits) = (link.info(*segment), link.limits);
+        let (mut info, limits) = (link.info(*segment), link.limits);
+        info.rounded[0] = if offset > 0.0 { rounded(offset, limits.speed, self.smear) } else { 0.0 };
         let link = Arc::new(link.clone());
-        let after = Vec::new();
-        self.pieces.push_back(Piece { link, info, path, limits, offset, begun: false, slowed: false, after });
+        let (after, slack) = (Vec::new(), self.smear.map_or(0.0, |smear| smear.path_error));
+        let piece =
+            Piece { link, info, path, limits, offset, begun: false, slowed: false, slack, off: 0.0, after };
+        self.pieces.push_back(piece);
     }
 
     /// A step that takes no time, when all moves so far are done.
@@ -171,9 +191,51 @@ impl<const N: usize> Run<N> {
             return Some(Sight { to: whole, open: false });
         }
         // The end of the last move may yet become a corner.
-        let certain = if closed { whole } else { whole - SHARE * last.link.path.length() };
+        let certain = if closed { whole } else { whole - SHARE * last.link.path.length() - self.reach() };
         let to = self.reached_in(HORIZON * factor);
         (to < certain).then_some(Sight { to, open: true })
+    }
+
+    /// How far a place may slow down the way before it, on account of prefilters.
+    pub(super) fn reach(&self) -> f64 {
+        self.smear.map_or(0.0, |smear| self.fastest() * smear.length)
+    }
+
+    /// The greatest programmed speed.
+    pub(super) fn fastest(&self) -> f64 {
+        self.pieces.iter().map(|piece| piece.limits.speed).fold(0.0, f64::max)
+    }
+
+    /// A place ahead, or the end of the corner that it lies in: a corner is looked at whole.
+    pub(super) fn past_corner(&self, place: f64) -> f64 {
+        let corner = self
+            .placed()
+            .find(|(from, piece)| piece.is_corner() && *from < place && place < from + piece.path.length());
+        corner.map_or(place, |(from, piece)| from + piece.path.length())
+    }
+
+    /// The prefilters take the tool this far off a piece.
+    pub(super) fn note_off(&mut self, index: usize, off: f64) {
+        if let Some(piece) = self.pieces.get_mut(index) {
+            piece.off = piece.off.max(off);
+        }
+    }
+
+    /// Keeps the caps on account of places before `end`, which is the new start.
+    pub(super) fn keep_caps(&mut self, caps: &[Cap], end: f64) {
+        let lasting = caps.iter().filter(|cap| cap.place < end && cap.to > end);
+        let moved =
+            |cap: &Cap| Cap { place: cap.place - end, from: cap.from - end, to: cap.to - end, ..*cap };
+        self.caps = lasting.map(moved).collect();
+    }
+
+    /// The pieces with where they begin.
+    pub(super) fn placed(&self) -> impl Iterator<Item = (f64, &Piece<N>)> {
+        self.pieces.iter().scan(0.0, |start, piece| {
+            let from = *start;
+            *start += piece.path.length();
+            Some((from, piece))
+        })
     }
 
     /// The coordinate reached after a time at programmed speeds.
@@ -247,6 +309,7 @@ impl<const N: usize> Run<N> {
     pub(super) fn give_up_after(&mut self, index: usize) -> Vec<Step> {
         let pieces = std::mem::take(&mut self.pieces);
         self.speed = 0.0;
+        self.caps.clear();
         let Some(failed) = pieces.get(index).map(|piece| Arc::clone(&piece.link)) else { return Vec::new() };
         let mut steps = Vec::new();
         let mut of = failed;
@@ -261,7 +324,21 @@ impl<const N: usize> Run<N> {
     }
 }
 
+/// How far from a corner a move is rounded by prefilters, in metres along it; `trim` is what the corner's blend took.
+fn rounded(trim: f64, speed: f64, smear: Option<Smear>) -> f64 {
+    smear.map_or(0.0, |smear| trim + speed * smear.length)
+}
+
 impl<const N: usize> Piece<N> {
+    pub(super) fn is_corner(&self) -> bool {
+        matches!(self.info.kind, SegmentKind::Corner { .. })
+    }
+
+    /// Some of what was handed out is slower than programmed.
+    pub(super) fn is_slowed(&self) -> bool {
+        self.slowed
+    }
+
     /// The corner that this move, which has been cut short for it, ends in. What follows the move follows the corner.
     fn corner(&mut self, blend: &Path, limits: PathLimits, segment: u32) -> Self {
         let link = Arc::clone(&self.link);
@@ -273,7 +350,8 @@ impl<const N: usize> Piece<N> {
         };
         let info = SegmentInfo { segment, kind, speed: Some(limits.speed), constant_part: None, ..self.info };
         let after = std::mem::take(&mut self.after);
-        Self { link, info, path: *blend, limits, offset: length, begun: false, slowed: false, after }
+        let (begun, slowed, slack, off) = (false, false, 0.0, 0.0);
+        Self { link, info, path: *blend, limits, offset: length, begun, slowed, slack, off, after }
     }
 
     /// From where to where the plan holds the programmed speed, with what this timing adds; in the coordinate of the link.

@@ -129,6 +129,9 @@ pub struct SegmentInfo {
     /// From where to where on the path (m from its start) the plan holds the programmed speed: the end of acceleration
     /// and the start of deceleration. None where the speed is never reached.
     pub constant_part: Option<[f64; 2]>,
+    /// Over how much of the path, from its start and from its end (m), prefilters round the corners there: what is off the path in
+    /// these parts belongs to the corners.
+    pub rounded: [f64; 2],
 }
 
 impl SegmentInfo {

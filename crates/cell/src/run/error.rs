@@ -35,6 +35,9 @@ pub enum RunError {
     /// The cell's simulated drives cannot be set up.
     #[error("simulation: {0}")]
     Drive(#[from] crate::sim::SetupError),
+    /// The cell's prefilters do not suit its cycle.
+    #[error("vibration.prefilter: {0}")]
+    Prefilter(#[from] seamline::vibration::StageError),
     /// The program fails.
     #[error("{0}")]
     Job(#[from] JobError),

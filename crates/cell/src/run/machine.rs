@@ -2,12 +2,13 @@
 
 use rtrb::Consumer;
 use seamline::control::{
-    Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, STAGES, ServoModel,
-    StageClock,
+    Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, JointPrefilter,
+    PrefilterEntry, STAGES, ServoModel, StageClock,
 };
 use seamline::drive::Drive;
 use seamline::geometry::Pose;
 use seamline::safety::{Fault, WorkspaceBox};
+use seamline::vibration::{Kernel, StageEntry, StageError, stage_entries};
 
 use super::clock::thread_cpu_ns;
 use crate::cell::Cell;
@@ -35,10 +36,24 @@ struct Times {
     whole: TimeHistogram,
 }
 
+/// Memory of the prefilters, from the heap before the first cycle.
+type Memory<const N: usize> = Box<[PrefilterEntry<N>]>;
+
+/// The prefilters of a cell.
+///
+/// # Errors
+/// [`StageError`] where a kernel does not suit the period.
+pub fn joint_prefilter<const N: usize>(cell: &Cell) -> Result<JointPrefilter<N, Memory<N>>, StageError> {
+    let period = cell.cycle.period;
+    let stage =
+        |kernel: &Kernel| (*kernel, vec![StageEntry::ZERO; stage_entries(kernel, period)].into_boxed_slice());
+    JointPrefilter::try_new(cell.vibration.kernels().iter().map(stage), period)
+}
+
 /// A controller, its drives and its queue. [`Machine::cycle`] neither allocates nor locks.
 #[derive(Debug)]
 pub struct Machine<const N: usize, K, D, C> {
-    cycle: Cycle<N, K>,
+    cycle: Cycle<N, K, Memory<N>>,
     drive: D,
     clock: C,
     queue: Queue<N>,
@@ -51,8 +66,16 @@ pub struct Machine<const N: usize, K, D, C> {
 
 impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, C: StageClock> Machine<N, K, D, C> {
     /// A disabled controller whose arm stands at home, on a queue that a planner fills.
-    #[must_use]
-    pub fn new(cell: &Cell, arm: &Arm<N, K>, drive: D, clock: C, queue: Consumer<Command<N>>) -> Self {
+    ///
+    /// # Errors
+    /// [`StageError`] where the cell's prefilters do not suit its cycle.
+    pub fn new(
+        cell: &Cell,
+        arm: &Arm<N, K>,
+        drive: D,
+        clock: C,
+        queue: Consumer<Command<N>>,
+    ) -> Result<Self, StageError> {
         let flange_from_tcp = cell.tool(0).map_or_else(Pose::identity, |tool| tool.flange_from_tcp);
         let lag = |joint| cell.simulation.servo_lag.get(joint).copied().unwrap_or(0.0);
         let config = CycleConfig {
@@ -67,8 +90,9 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, C: StageClock> Machine<N, K
             },
             overruns_in_row: OVERRUNS_IN_ROW,
         };
-        Self {
-            cycle: Cycle::new(config, arm.kinematics.clone(), arm.home),
+        let prefilter = joint_prefilter(cell)?;
+        Ok(Self {
+            cycle: Cycle::with_prefilter(config, arm.kinematics.clone(), prefilter, arm.home),
             drive,
             clock,
             queue: Queue(queue),
@@ -83,7 +107,7 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, C: StageClock> Machine<N, K
             count: 0,
             last_tcp: arm.kinematics.forward(&arm.home) * flange_from_tcp,
             times: Times { stages: Default::default(), whole: TimeHistogram::new() },
-        }
+        })
     }
 
     /// Speed override from the next cycle on, 0 … 1.

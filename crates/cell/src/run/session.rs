@@ -14,7 +14,7 @@ use super::machine::Machine;
 use super::realtime;
 use super::supervisor::Supervisor;
 use super::walk::Walk;
-use crate::cell::Cell;
+use crate::cell::{Cell, Vibration};
 use crate::job::JobSet;
 use crate::plan::{Arm, PlanningArm};
 use crate::record::{Acceptance, Findings, JointInfo, Outcome, Recorder, RunInfo, SampleSender, Summary};
@@ -83,7 +83,7 @@ pub fn run<const N: usize, K: PlanningArm<N> + Send>(
     fs::create_dir_all(&options.out).map_err(file)?;
     let (samples, recorder) = Recorder::start(&path, &info).map_err(file)?;
     let (producer, consumer) = RingBuffer::new(QUEUE);
-    let mut machine = Machine::new(cell, arm, drive, MonotonicClock::default(), consumer);
+    let mut machine = Machine::new(cell, arm, drive, MonotonicClock::default(), consumer)?;
     machine.set_override(options.speed_override);
     let walk = Walk::new(jobs, cell, arm)?;
     let mut supervisor = Supervisor::new(walk, producer, reads_inputs, recorder, info.joints.clone());
@@ -132,6 +132,16 @@ fn logical<const N: usize, K: PlanningArm<N>>(
     (samples, LoopFigures { stage_times: machine.stage_times(), ..LoopFigures::default() })
 }
 
+/// The figures may be off by what the cell lets a prefilter do.
+fn acceptance(cell: &Cell) -> Acceptance {
+    let mut acceptance = Acceptance::default();
+    if !cell.vibration.kernels().is_empty() {
+        acceptance.path_deviation += cell.vibration.path_error();
+        acceptance.orientation_deviation += Vibration::TURN_ERROR;
+    }
+    acceptance
+}
+
 fn run_info<const N: usize, K>(jobs: &JobSet, cell: &Cell, arm: &Arm<N, K>) -> RunInfo {
     let joints = (0..N).map(|joint| JointInfo {
         name: arm.joint_names[joint].clone(),
@@ -146,6 +156,6 @@ fn run_info<const N: usize, K>(jobs: &JobSet, cell: &Cell, arm: &Arm<N, K>) -> R
         robot: arm.name.clone(),
         joints: joints.collect(),
         period: cell.cycle.period,
-        acceptance: Acceptance::default(),
+        acceptance: acceptance(cell),
     }
 }

@@ -75,7 +75,7 @@ fn a_million_cycles_allocate_nothing() {
     let (mut producer, consumer) = RingBuffer::new(commands.len());
     commands.into_iter().for_each(|command| producer.push(command).unwrap());
     let drive = SimulatedDrive::<6>::from_cell(&cell).unwrap();
-    let mut machine = Machine::new(&cell, &arm, drive, MonotonicClock::default(), consumer);
+    let mut machine = Machine::new(&cell, &arm, drive, MonotonicClock::default(), consumer).unwrap();
     machine.request(Event::Enable);
     machine.cycle();
     machine.request(Event::Start);

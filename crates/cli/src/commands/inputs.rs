@@ -2,10 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::anyhow;
+use seamline::vibration::Prefilter;
 use seamline_cell::cell::Cell;
 use seamline_cell::job::JobSet;
 use seamline_cell::plan::CellArm;
 use seamline_cell::run::RunError;
+
+use super::modes::prefilter;
 
 /// The cell that a subcommand is about.
 #[derive(Debug, clap::Args)]
@@ -13,10 +17,24 @@ pub(crate) struct CellArguments {
     /// Cell file (TOML), or a built-in cell (default, scara); without it the default.
     #[arg(long = "cell", value_name = "NAME|F.toml")]
     source: Option<PathBuf>,
+    /// Prefilter on the joint commands, made for the cell's flexible modes, in place of the cell's own: none, zv, zvd, fir, fir-zv,
+    /// fir-zvd, mzv, ei, 2hump-ei, 3hump-ei.
+    #[arg(long, value_name = "NAME", value_parser = prefilter)]
+    prefilter: Option<Prefilter>,
 }
 
 impl CellArguments {
     fn read(&self) -> anyhow::Result<Cell> {
+        let mut cell = self.read_source()?;
+        if let Some(prefilter) = self.prefilter {
+            cell.vibration = cell.vibration.with_prefilter(prefilter).map_err(|error| {
+                anyhow!("--prefilter {}: expected {error}", prefilter.name().to_lowercase())
+            })?;
+        }
+        Ok(cell)
+    }
+
+    fn read_source(&self) -> anyhow::Result<Cell> {
         let Some(path) = &self.source else { return Ok(Cell::default_cell()?) };
         match path.to_str().and_then(Cell::built_in) {
             Some(cell) => Ok(cell?),

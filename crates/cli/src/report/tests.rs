@@ -134,8 +134,15 @@ fn job() -> Vec<Move> {
             let ramp = 0.5 * speed * RAMP;
             let tool_speed = matches!(kind, SegmentKind::Path(_)).then_some(speed);
             let constant_part = tool_speed.map(|_| [ramp, length - ramp]);
-            let info =
-                SegmentInfo { segment: index as u32 + 1, line, kind, speed: tool_speed, arc, constant_part };
+            let info = SegmentInfo {
+                segment: index as u32 + 1,
+                line,
+                kind,
+                speed: tool_speed,
+                arc,
+                constant_part,
+                rounded: [0.0; 2],
+            };
             Move { info, from, to, speed, duration }
         };
     moves.into_iter().enumerate().map(number).collect()

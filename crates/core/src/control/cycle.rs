@@ -1,11 +1,13 @@
-//! The cycle: four tiers from the measured joints to the next command.
+//! The cycle: four tiers from the measured joints to the next command, with the prefilters between the third and the fourth.
 
 use super::feedback::{Observer, ServoModel};
 use super::halt::Halt;
 use super::mode::{Event, Mode};
-use super::program::{CommandSource, Program};
+use super::prefilter::{JointPrefilter, PrefilterEntry, Progress};
+use super::program::{Arm, CommandSource, Program};
 use super::rate::RateLimits;
 use super::telemetry::{CycleOutput, StageClock, Status};
+use super::trail::Mark;
 use crate::drive::{DriveFault, JointCommand};
 use crate::geometry::Pose;
 use crate::kinematics::{JointJet, Kinematics};
@@ -46,9 +48,9 @@ pub struct CycleInput<const N: usize> {
     pub late: bool,
 }
 
-/// The controller's state from cycle to cycle.
+/// The controller's state from cycle to cycle. `M` is the memory of its prefilters.
 #[derive(Debug, Clone)]
-pub struct Cycle<const N: usize, K> {
+pub struct Cycle<const N: usize, K, M = [PrefilterEntry<N>; 0]> {
     config: CycleConfig<N>,
     kinematics: K,
     mode: Mode,
@@ -58,6 +60,10 @@ pub struct Cycle<const N: usize, K> {
     /// The job can go on from where the arm stands.
     on_path: bool,
     program: Program<N>,
+    prefilter: JointPrefilter<N, M>,
+    /// The place of the program that the arm has come to, and the rate at which it goes on.
+    mark: Mark,
+    rate: f64,
     halt: Option<Halt<N>>,
     observer: Observer<N>,
     envelope: Envelope<N>,
@@ -68,9 +74,27 @@ pub struct Cycle<const N: usize, K> {
 }
 
 impl<const N: usize, K: Kinematics<N>> Cycle<N, K> {
-    /// A disabled controller whose arm stands at `position`.
+    /// A disabled controller whose arm stands at `position`, without prefilters.
     #[must_use]
     pub fn new(config: CycleConfig<N>, kinematics: K, position: [f64; N]) -> Self {
+        Self::with_prefilter(config, kinematics, JointPrefilter::none(), position)
+    }
+}
+
+impl<const N: usize, K, M> Cycle<N, K, M>
+where
+    K: Kinematics<N>,
+    M: AsRef<[PrefilterEntry<N>]> + AsMut<[PrefilterEntry<N>]>,
+{
+    /// A disabled controller whose arm stands at `position`, with prefilters on its joint commands.
+    #[must_use]
+    pub fn with_prefilter(
+        config: CycleConfig<N>,
+        kinematics: K,
+        mut prefilter: JointPrefilter<N, M>,
+        position: [f64; N],
+    ) -> Self {
+        prefilter.reset(position, Mark::default());
         let CycleConfig { period, limits, workspace, flange_from_tcp, servo, .. } = config;
         // A whole number of periods, so that a recovery of the rate ends with a cycle.
         let spacing = period * crate::math::float::ceil(SAMPLE_SPACING / period - 1e-9).max(1.0);
@@ -81,6 +105,9 @@ impl<const N: usize, K: Kinematics<N>> Cycle<N, K> {
             stop: None,
             on_path: false,
             program: Program::at_rest(position, flange_from_tcp, spacing),
+            prefilter,
+            mark: Mark::default(),
+            rate: 0.0,
             halt: None,
             observer: Observer::at_rest(position, servo, period),
             envelope: Envelope::at_rest(position, limits, workspace, period),
@@ -156,6 +183,8 @@ impl<const N: usize, K: Kinematics<N>> Cycle<N, K> {
         self.halt = None;
         self.on_path = false;
         self.program.clear(position);
+        (self.mark, self.rate) = (self.program.place().mark, 0.0);
+        self.prefilter.reset(position, self.mark);
         self.envelope.restart(position);
         self.observer.restart(position);
     }
@@ -197,7 +226,12 @@ impl<const N: usize, K: Kinematics<N>> Cycle<N, K> {
         let goal = if self.mode == Mode::Running { speed_override } else { 0.0 };
         let MotionLimits { acceleration, jerk, .. } = self.config.limits;
         let limits = RateLimits { acceleration, jerk };
-        self.program.advance(goal, source, &self.kinematics, &limits, self.config.period)
+        let arm = match (self.prefilter.is_none(), self.prefilter.is_drained()) {
+            (true, _) => Arm::AtOnce,
+            (false, true) => Arm::Arrived,
+            (false, false) => Arm::Behind,
+        };
+        self.program.advance(goal, source, &self.kinematics, &limits, self.config.period, arm)
     }
 
     /// Tier 4, after the joints of tier 3: the command, if the envelope lets it pass; otherwise a halt.
@@ -207,7 +241,7 @@ impl<const N: usize, K: Kinematics<N>> Cycle<N, K> {
             return;
         }
         if self.halt.is_none() {
-            let command = joints.map(|jet| self.in_time(&jet)).and_then(|command| {
+            let command = joints.map(|jet| self.shaped(&jet)).and_then(|command| {
                 let tcp = self.kinematics.forward(&command.position) * self.program.place().flange_from_tcp;
                 self.envelope.judge(&command.position, &tcp.translation.vector).map(|()| (command, tcp))
             });
@@ -231,6 +265,16 @@ impl<const N: usize, K: Kinematics<N>> Cycle<N, K> {
         self.base_from_tcp = tcp;
     }
 
+    /// The command in real time, as the prefilters let it through.
+    fn shaped(&mut self, jet: &JointJet<N>) -> JointCommand<N> {
+        let command = self.in_time(jet);
+        let (way, since) = self.program.way();
+        let (mark, rate) = (self.program.place().mark, self.program.rate().value());
+        let shaped = self.prefilter.update(&command, &Progress { mark, since, way, rate });
+        (self.mark, self.rate) = (shaped.mark, shaped.rate);
+        shaped.command
+    }
+
     /// Joint motion in real time: programme time runs at the rate.
     fn in_time(&self, jet: &JointJet<N>) -> JointCommand<N> {
         let (r, c) = (self.program.rate().value(), self.program.rate().slope());
@@ -246,7 +290,7 @@ impl<const N: usize, K: Kinematics<N>> Cycle<N, K> {
     fn after_motion(&mut self) {
         match self.mode {
             Mode::Running if self.program.place().ended => self.apply(Event::JobDone),
-            Mode::Stopping if self.program.is_at_rest() => self.apply(Event::AtRest),
+            Mode::Stopping if self.is_at_rest() => self.apply(Event::AtRest),
             _ => false,
         };
     }
@@ -271,12 +315,12 @@ impl<const N: usize, K: Kinematics<N>> Cycle<N, K> {
     fn is_at_rest(&self) -> bool {
         match &self.halt {
             Some(halt) => halt.is_done(),
-            None => !self.on_path || self.program.is_at_rest(),
+            None => !self.on_path || self.program.is_at_rest() && self.prefilter.is_drained(),
         }
     }
 
     fn output(&self, refused: Option<Event>, stage_ns: [u32; 4]) -> CycleOutput<N> {
-        let place = self.program.place();
+        let Mark { line, segment, marker, arc } = self.mark;
         let moving = self.mode == Mode::Running;
         let cut = match self.stop {
             Some(StopCategory::Category0) => true,
@@ -288,18 +332,19 @@ impl<const N: usize, K: Kinematics<N>> Cycle<N, K> {
             mode: self.mode,
             fault: self.fault,
             refused,
-            line: place.line,
-            segment: place.segment,
-            marker: place.marker,
-            rate: self.program.rate().value(),
+            line,
+            segment,
+            marker,
+            rate: self.rate,
             at_rest: self.is_at_rest(),
             base_from_tcp: self.base_from_tcp,
             estimated,
-            measured_base_from_tcp: self.kinematics.forward(&estimated) * place.flange_from_tcp,
+            measured_base_from_tcp: self.kinematics.forward(&estimated)
+                * self.program.place().flange_from_tcp,
             overruns: self.overruns,
             stage_ns,
         };
         let power = self.mode != Mode::Disabled && !cut;
-        CycleOutput { command: self.command, power, arc: place.arc && moving, status }
+        CycleOutput { command: self.command, power, arc: arc && moving, status }
     }
 }

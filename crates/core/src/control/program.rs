@@ -3,6 +3,7 @@
 use super::block::{Block, Command, Motion};
 use super::lookahead::{AlongPath, JointMotion, Lookahead};
 use super::rate::{Rate, RateLimits};
+use super::trail::Mark;
 use crate::geometry::Pose;
 use crate::kinematics::{JointJet, Kinematics};
 use crate::path::PathState;
@@ -28,6 +29,10 @@ pub(super) struct Program<const N: usize> {
     /// Programme time now, and when the first pending move begins.
     now: f64,
     move_start: f64,
+    /// Path covered before the first pending move.
+    way_before: f64,
+    /// A move has ended at rest, and the arm has yet to come to where it ended.
+    arriving: bool,
     /// What is left of a dwell that has begun.
     dwell_left: Option<f64>,
     rate: Rate,
@@ -41,24 +46,34 @@ pub(super) struct Program<const N: usize> {
 /// What the program has reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
-    pub(super) line: u32,
-    pub(super) segment: u32,
+    pub(super) mark: Mark,
     pub(super) flange_from_tcp: Pose,
-    pub(super) arc: bool,
-    pub(super) marker: u32,
     pub(super) ended: bool,
+}
+
+/// How the arm follows the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Arm {
+    /// It is where the program is.
+    AtOnce,
+    /// Part of the motion so far is still in the prefilter.
+    Behind,
+    /// All of it has come out of the prefilter.
+    Arrived,
 }
 
 impl<const N: usize> Program<N> {
     /// No program, at rest at `position`.
     pub(super) fn at_rest(position: [f64; N], flange_from_tcp: Pose, sample_spacing: f64) -> Self {
-        let place = Place { line: 0, segment: 0, flange_from_tcp, arc: false, marker: 0, ended: false };
+        let place = Place { mark: Mark::default(), flange_from_tcp, ended: false };
         Self {
             pending: [Command::End; PENDING],
             first: 0,
             count: 0,
             now: 0.0,
             move_start: 0.0,
+            way_before: 0.0,
+            arriving: false,
             dwell_left: None,
             rate: Rate::constant(0.0),
             ahead: Lookahead::new(sample_spacing),
@@ -70,7 +85,7 @@ impl<const N: usize> Program<N> {
 
     /// Forgets all commands; the arm is at rest at `position`.
     pub(super) fn clear(&mut self, position: [f64; N]) {
-        let place = Place { arc: false, ended: false, ..self.place };
+        let place = Place { mark: Mark { arc: false, ..self.place.mark }, ended: false, ..self.place };
         *self = Self { place, ..Self::at_rest(position, self.place.flange_from_tcp, self.ahead.spacing()) };
     }
 
@@ -82,12 +97,19 @@ impl<const N: usize> Program<N> {
         &self.rate
     }
 
+    /// Path covered since the start, and by the moves that are done: where what the place says began. Its unit is that of each path, and
+    /// seconds for a move of the joints.
+    pub(super) fn way(&self) -> (f64, f64) {
+        let here = self.head_move().map_or(0.0, |block| way_on(block, self.now - self.move_start));
+        (self.way_before + here, self.way_before)
+    }
+
     /// Nothing moves: time stands still, or there is nothing to move along.
     pub(super) fn is_at_rest(&self) -> bool {
         self.rate.is_stopped() || self.head_move().is_none()
     }
 
-    /// One cycle on towards the rate `goal`.
+    /// One cycle on towards the rate `goal`. What follows a move that ends at rest waits until the arm stands there.
     ///
     /// # Errors
     /// [`Fault::Starved`] where a motion has no continuation; [`Fault::NoInverse`] where the path ahead has no joints.
@@ -98,15 +120,20 @@ impl<const N: usize> Program<N> {
         kinematics: &K,
         limits: &RateLimits<N>,
         period: f64,
+        arm: Arm,
     ) -> Result<(), Fault> {
         self.refill(source, goal);
         self.look_ahead(kinematics)?;
+        if self.arriving && arm != Arm::Behind {
+            self.arriving = false;
+            self.enter_head(goal);
+        }
         if self.head_move().is_some() {
             self.now += self.rate.advance(goal, self.now, &self.ahead, limits, period);
         }
         // Each turn removes a command, or is the last.
         for _ in 0..PENDING {
-            if !self.finish_head(goal, kinematics, period)? {
+            if self.arriving || !self.finish_head(goal, kinematics, period, arm)? {
                 break;
             }
         }
@@ -119,6 +146,7 @@ impl<const N: usize> Program<N> {
         goal: f64,
         kinematics: &K,
         period: f64,
+        arm: Arm,
     ) -> Result<bool, Fault> {
         match self.head() {
             None => return Ok(false),
@@ -127,12 +155,14 @@ impl<const N: usize> Program<N> {
                 if self.now < end {
                     return Ok(false);
                 }
-                let rests = block.ends_at_rest;
+                let (rests, way) = (block.ends_at_rest, way_on(block, block.duration()));
                 // Exactly where the move ends, however the cycles fell.
                 self.position = joints_on(block, block.duration(), &self.position, kinematics)?.position;
                 self.move_start = end;
+                self.way_before += way;
+                self.arriving = rests && arm != Arm::AtOnce;
                 self.pop(goal);
-                if !self.moves_on() {
+                if self.arriving || !self.moves_on() {
                     // Nothing to spend the rest of the period on.
                     self.now = end;
                     if !rests {
@@ -143,7 +173,7 @@ impl<const N: usize> Program<N> {
             }
             Some(Command::Dwell { line, segment, duration }) => {
                 let (line, segment, duration) = (*line, *segment, *duration);
-                (self.place.line, self.place.segment) = (line, segment);
+                (self.place.mark.line, self.place.mark.segment) = (line, segment);
                 // It counts from the cycle after the one in which the arm has come to rest.
                 let elapsed = if goal > 0.0 { period } else { 0.0 };
                 let left = self.dwell_left.map_or(duration, |left| left - elapsed);
@@ -154,8 +184,8 @@ impl<const N: usize> Program<N> {
                 }
                 self.dwell_left = None;
             }
-            Some(Command::Arc { on }) => self.place.arc = *on,
-            Some(Command::Marker(number)) => self.place.marker = *number,
+            Some(Command::Arc { on }) => self.place.mark.arc = *on,
+            Some(Command::Marker(number)) => self.place.mark.marker = *number,
             Some(Command::End) => {
                 self.place.ended = true;
                 return Ok(false);
@@ -182,9 +212,10 @@ impl<const N: usize> Program<N> {
         (self.count > 0).then(|| &self.pending[self.first])
     }
 
+    /// The move under way.
     fn head_move(&self) -> Option<&Block<N>> {
         match self.head() {
-            Some(Command::Move(block)) => Some(block),
+            Some(Command::Move(block)) if !self.arriving => Some(block),
             _ => None,
         }
     }
@@ -211,7 +242,8 @@ impl<const N: usize> Program<N> {
         if let Some(block) = self.head_move() {
             let (line, segment, tool, from_rest) =
                 (block.line, block.segment, block.flange_from_tcp, block.starts_at_rest);
-            (self.place.line, self.place.segment, self.place.flange_from_tcp) = (line, segment, tool);
+            (self.place.mark.line, self.place.mark.segment, self.place.flange_from_tcp) =
+                (line, segment, tool);
             if from_rest {
                 self.rate = Rate::constant(goal);
             }
@@ -273,6 +305,14 @@ impl<const N: usize> Program<N> {
             (start, rests) = (end, block.ends_at_rest);
         }
         Ok((rests && self.count < PENDING).then_some(JointMotion::REST))
+    }
+}
+
+/// The path covered at a time since a block's start.
+fn way_on<const N: usize>(block: &Block<N>, time: f64) -> f64 {
+    match &block.motion {
+        Motion::Joint(_) => time,
+        Motion::Path(motion) => motion.state(time).position - motion.state(0.0).position,
     }
 }
 

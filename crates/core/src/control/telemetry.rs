@@ -46,15 +46,15 @@ pub struct Status<const N: usize> {
     pub fault: Option<Fault>,
     /// An event of this cycle that meant nothing in its mode.
     pub refused: Option<Event>,
-    /// Line of the job.
+    /// Line of the job. This, the segment and the marker are where the arm is, behind a prefilter as well.
     pub line: u32,
     /// Running number of the segment.
     pub segment: u32,
     /// The last marker passed; 0 before the first.
     pub marker: u32,
-    /// Rate of programme time, 0 … 1.
+    /// Rate of programme time, 0 … 1, as the prefilters let it through: what the arm's speed has in it.
     pub rate: f64,
-    /// Nothing moves.
+    /// Nothing moves, and nothing is left in a prefilter.
     pub at_rest: bool,
     /// Commanded tool centre point in the base frame.
     pub base_from_tcp: Pose,

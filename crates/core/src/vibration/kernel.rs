@@ -162,6 +162,16 @@ impl Kernel {
         impulses + 0.5 * self.rectangles().iter().sum::<f64>()
     }
 
+    /// Mean square of the delays about [`Kernel::delay`], in seconds².
+    #[must_use]
+    pub fn variance(&self) -> f64 {
+        let impulses = self.impulses();
+        let centre: f64 = impulses.iter().map(|impulse| impulse.weight * impulse.time).sum();
+        let square = |impulse: &Impulse| impulse.weight * (impulse.time - centre) * (impulse.time - centre);
+        let rectangles = self.rectangles().iter().map(|duration| duration * duration / 12.0);
+        impulses.iter().map(square).sum::<f64>() + rectangles.sum::<f64>()
+    }
+
     /// Puts an impulse in its place, or adds it to the one that is there.
     fn add(&mut self, impulse: Impulse) -> Result<(), KernelError> {
         let used = self.impulses.get_mut(..self.impulse_count).unwrap_or_default();

@@ -23,7 +23,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ("[robott]\nname = \"x\"\n", "cell.toml:1:2: robott: unknown key, did you mean robot?"),
     (
         "colour = \"red\"\n",
-        "cell.toml:1:1: colour: unknown key, expected one of robot, cartesian, tool, user_frame, job, arc_start, arc_end, weave, arc, sensor, flexible_mode, io, cycle, safety, drive, simulation",
+        "cell.toml:1:1: colour: unknown key, expected one of robot, cartesian, tool, user_frame, job, arc_start, arc_end, weave, arc, sensor, flexible_mode, vibration, io, cycle, safety, drive, simulation",
     ),
     ("robot = 5\n", "cell.toml:1:9: robot: found 5, expected a table"),
     ("[[robot]]\nname = \"x\"\n", "cell.toml:1:1: robot: found [[robot]], expected a table"),
@@ -228,7 +228,23 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "[[flexible_mode]]\nnumber = 1\nfrequency_hz = 6.34\ndamping = 1.0\n",
-        "cell.toml:4:11: flexible_mode[1].damping: found 1.0, expected a number from 0 to 0.99",
+        "cell.toml:4:11: flexible_mode[1].damping: found 1.0, expected a number from 0 to 0.94",
+    ),
+    (
+        "[vibration]\nprefilter = \"FIR\"\n",
+        "cell.toml:2:13: vibration.prefilter: found \"FIR\", expected \"none\", \"zv\", \"zvd\", \"fir\", \"fir-zv\", \"fir-zvd\", \"mzv\", \"ei\", \"2hump-ei\" or \"3hump-ei\"",
+    ),
+    (
+        "[vibration]\nprefilter = \"zv\"\n",
+        "cell.toml:2:13: vibration.prefilter: found \"zv\", expected a [[flexible_mode]] to make the prefilter for",
+    ),
+    (
+        "[vibration]\nprefilter = \"fir-zvd\"\n[[flexible_mode]]\nnumber = 1\nfrequency_hz = 0.8\ndamping = 0.0\n",
+        "cell.toml:2:13: vibration.prefilter: found \"fir-zvd\", expected a prefilter of at most 2 s: for these modes it takes 2.50 s",
+    ),
+    (
+        "[vibration]\npath_error_mm = 0\n",
+        "cell.toml:2:17: vibration.path_error_mm: found 0, expected a number from 0.01 to 100",
     ),
     (
         "[[io.input]]\nnumber = 4\nvalue = 1\n",

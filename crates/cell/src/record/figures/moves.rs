@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use seamline::control::Mode;
 use seamline::geometry::Vector3;
-use seamline::path::{Curve, Measure};
+use seamline::path::{Curve, Measure, Path};
 use serde::Serialize;
 
 use super::corner::CornerWatch;
@@ -104,11 +104,13 @@ pub(super) struct Moment {
 struct Current {
     info: SegmentInfo,
     programmed: Option<Programmed>,
+    /// Of the programmed path, in its own coordinate.
+    length: f64,
     corner: Option<CornerWatch>,
     start: f64,
     end: f64,
-    distance: f64,
-    angle: f64,
+    /// Greatest distance and angle from the path, where it has not been rounded.
+    off: Option<[f64; 2]>,
     /// Least and greatest speed in the constant part.
     speed: Option<[f64; 2]>,
     speed_error: f64,
@@ -191,11 +193,11 @@ impl Current {
         Self {
             info,
             programmed,
+            length: info.kind.path().map_or(0.0, Path::length),
             corner,
             start: time,
             end: time,
-            distance: 0.0,
-            angle: 0.0,
+            off: None,
             speed: None,
             speed_error: 0.0,
             last_s: f64::NAN,
@@ -213,8 +215,11 @@ impl Current {
         }
         let Some(programmed) = &self.programmed else { return f64::NAN };
         let Deviation { s, distance, angle } = programmed.deviation(&sample.tcp);
-        self.distance = self.distance.max(distance);
-        self.angle = self.angle.max(angle);
+        let [from, to] = self.info.rounded;
+        if from <= s && s <= self.length - to {
+            let [most, turn] = self.off.unwrap_or_default();
+            self.off = Some([most.max(distance), turn.max(angle)]);
+        }
         // Both ends of the cycle must lie in the constant part, of this segment.
         let last_s = std::mem::replace(&mut self.last_s, s);
         let constant = self.info.constant_part.is_some_and(|[from, to]| from <= last_s && s <= to);
@@ -261,9 +266,9 @@ impl Current {
             speed_min_mm_s: self.speed.map(|[least, _]| mm(least)),
             speed_max_mm_s: self.speed.map(|[_, greatest]| mm(greatest)),
             speed_error_max: self.speed.filter(|_| path.is_some()).map(|_| self.speed_error),
-            straightness_max_mm: path.filter(|_| !is_arc).map(|_| mm(self.distance)),
-            arc_deviation_max_mm: path.filter(|_| is_arc).map(|_| mm(self.distance)),
-            orientation_deviation_max_rad: path.map(|_| self.angle),
+            straightness_max_mm: self.off.filter(|_| !is_arc).map(|[distance, _]| mm(distance)),
+            arc_deviation_max_mm: self.off.filter(|_| is_arc).map(|[distance, _]| mm(distance)),
+            orientation_deviation_max_rad: self.off.map(|[_, angle]| angle),
             corner_error_mm: self.corner.as_ref().and_then(CornerWatch::distance).map(mm),
             corner_permitted_mm: permitted.map(mm),
         }

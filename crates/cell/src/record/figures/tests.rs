@@ -79,6 +79,7 @@ fn segment(path: Path, speed: f64, constant_part: Option<[f64; 2]>) -> SegmentIn
         speed: Some(speed),
         arc: true,
         constant_part,
+        rounded: [0.0; 2],
     }
 }
 
@@ -246,6 +247,7 @@ fn events_and_verdict() {
         speed: None,
         arc: true,
         constant_part: None,
+        rounded: [0.0; 2],
     };
     let run = |fault: bool| {
         let mut analysis = Analysis::new(&robot(2));

@@ -1,0 +1,253 @@
+//! How far prefilters on the joints take the tool off its path, and how slow it must be for that.
+//!
+//! What comes out of the prefilters is a mean of the joints q(s) over some of the way behind the program. About that mean of s,
+//!
+//! ```text
+//! q̄ = q(s̄) + ½ q″ Var(s)        Var(s) ≤ σ² ṡ²
+//! ```
+//!
+//! with σ² the variance of the kernels, and q″ and ṡ the greatest over the kernels' length. The tool is off by what its Jacobian makes of
+//! it. So each place of the path has a speed that must not be passed within the kernels' length of it; how the speed changes does not
+//! matter, and neither do override and pause. `docs/vibration.md` has the derivation.
+
+use nalgebra::SVector;
+use seamline::geometry::Pose;
+use seamline::kinematics::{JointJet, Kinematics};
+use seamline::path::{Measure, Path};
+use seamline::vibration::Kernel;
+
+use super::arm::PlanningArm;
+use super::error::{PlanError, Problem};
+use super::joint_path::PathJoints;
+use super::planner::Planner;
+use super::remark::{Remarks, units};
+use super::run::Piece;
+use super::timing::{JointPath as _, PathLimits, Stretch};
+use crate::cell::Vibration;
+use crate::record::SegmentInfo;
+
+/// Places of a path that are looked at: this far apart, in metres and in radians of the tool's turn, and how many at least and at most.
+const SPACING: [f64; 2] = [5e-3, 0.02];
+const PLACES: [f64; 2] = [24.0, 2_000.0];
+/// Speeds are rounded down to powers of this, so that they do not change from place to place.
+const STEP: f64 = 1.02;
+/// What a corner leaves for the curvature of the joints' own.
+const MARGIN: f64 = 1.05;
+/// A weld that is this far off its path is worth a word, in metres.
+const WORTH_A_WORD: f64 = 1e-5;
+/// A slowdown within this share of the speed is rounding.
+const SAME_SPEED: f64 = 1e-3;
+
+/// What prefilters do to a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Smear {
+    /// σ², in s².
+    variance: f64,
+    /// How long a command takes to come out whole, and at a constant rate, in seconds.
+    pub(super) length: f64,
+    pub(super) delay: f64,
+    /// How far the tool may be off a move's path, in metres.
+    pub(super) path_error: f64,
+}
+
+/// A stretch of the run with a greatest speed, on account of a place in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cap {
+    pub(super) place: f64,
+    pub(super) from: f64,
+    pub(super) to: f64,
+    pub(super) speed: f64,
+}
+
+/// The greatest curvature of a path as far as it comes from curved joints: of the tool's place and of its turning, per path².
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Bend {
+    place: f64,
+    turn: f64,
+}
+
+impl Smear {
+    /// What the prefilters of a cell do; `None` where there are none.
+    pub(super) fn of(vibration: &Vibration) -> Option<Self> {
+        let kernels = vibration.kernels();
+        let sum = |of: fn(&Kernel) -> f64| kernels.iter().map(of).sum();
+        (!kernels.is_empty()).then(|| Self {
+            variance: sum(Kernel::variance),
+            length: sum(Kernel::length),
+            delay: sum(Kernel::delay),
+            path_error: vibration.path_error(),
+        })
+    }
+
+    /// How far the tool is off at a speed.
+    fn error(&self, bend: &Bend, speed: f64) -> f64 {
+        0.5 * self.variance * bend.place * speed * speed
+    }
+
+    /// The speed at which the tool is off by `error` metres, or turned by [`Vibration::TURN_ERROR`].
+    fn speed(&self, bend: &Bend, error: f64) -> f64 {
+        let square = (error / bend.place).min(Vibration::TURN_ERROR / bend.turn) * 2.0 / self.variance;
+        if square.is_nan() { f64::INFINITY } else { square.sqrt() }
+    }
+
+    /// How much of a corner's permitted error its blend may have, so that what the prefilters add at a speed keeps within the rest; half
+    /// of it where the speed must give way. `shape` is a blend's error times its curvature, which does not depend on its size.
+    pub(super) fn blend_error(&self, permitted: f64, shape: f64, speed: f64) -> f64 {
+        // The error e leaves ½ σ² (shape/e) v²: e² − permitted · e + ½ σ² shape v² = 0.
+        let off = 2.0 * MARGIN * self.variance * shape * speed * speed;
+        0.5 * (permitted + (permitted * permitted - off).max(0.0).sqrt())
+    }
+
+    /// A cap on account of what lies between two places.
+    fn cap(&self, [place, end]: [f64; 2], speed: f64) -> Cap {
+        let speed = STEP.powf((speed.ln() / STEP.ln()).floor());
+        let reach = speed * self.length;
+        Cap { place, from: place - reach, to: end + reach, speed }
+    }
+}
+
+impl Bend {
+    fn greater(self, other: Self) -> Self {
+        Self { place: self.place.max(other.place), turn: self.turn.max(other.turn) }
+    }
+}
+
+/// The bend of a path where its joints are `jet`, their derivatives along the path.
+fn bend<const N: usize>(kinematics: &impl Kinematics<N>, jet: &JointJet<N>, flange_from_tcp: &Pose) -> Bend {
+    let axes = kinematics.axes(&jet.position);
+    let twist = axes.jacobian() * SVector::from(jet.acceleration);
+    let (linear, angular) = (twist.fixed_rows::<3>(0), twist.fixed_rows::<3>(3));
+    let lever = axes.base_from_flange.rotation * flange_from_tcp.translation.vector;
+    Bend { place: (linear + angular.cross(&lever)).norm(), turn: angular.norm() }
+}
+
+/// The places of a move's path that are looked at, between two coordinates. They lie where they lie on the whole move, whatever part of it
+/// is asked for.
+fn places(path: &Path, from: f64, to: f64) -> impl Iterator<Item = f64> {
+    let length = path.length();
+    let turn = path.pose(0.0).rotation.angle_to(&path.pose(length).rotation);
+    let way = if path.measure() == Measure::Length { length / SPACING[0] } else { 0.0 };
+    let count = way.max(turn / SPACING[1]).ceil().clamp(PLACES[0], PLACES[1]);
+    (0..=count as u32).map(move |k| length * f64::from(k) / count).filter(move |s| (from..=to).contains(s))
+}
+
+/// Stretches with caps laid over them. No cap is below the speed `start` that the first stretch begins with.
+pub(super) fn slowed(stretches: &[Stretch], caps: &[Cap], start: f64) -> Vec<Stretch> {
+    let end = stretches.last().map_or(0.0, |stretch| stretch.to);
+    let mut ends: Vec<f64> = stretches.iter().map(|stretch| stretch.to).collect();
+    ends.extend(caps.iter().flat_map(|cap| [cap.from, cap.to]).filter(|s| *s > 0.0 && *s < end));
+    ends.sort_by(f64::total_cmp);
+    ends.dedup();
+    let mut from = 0.0;
+    let mut slowed: Vec<Stretch> = Vec::new();
+    for to in ends {
+        let Some(stretch) = stretches.iter().find(|stretch| stretch.to >= to) else { break };
+        let cap = least(caps, from, to);
+        let cap = if from == 0.0 { cap.max(start) } else { cap };
+        let limits = PathLimits { speed: stretch.limits.speed.min(cap), ..stretch.limits };
+        match slowed.last_mut() {
+            Some(before) if before.limits == limits => before.to = to,
+            _ => slowed.push(Stretch { to, limits }),
+        }
+        from = to;
+    }
+    slowed
+}
+
+/// The least cap between two coordinates.
+fn least(caps: &[Cap], from: f64, to: f64) -> f64 {
+    let here = caps.iter().filter(|cap| cap.from < to && cap.to > from);
+    here.fold(f64::INFINITY, |least, cap| least.min(cap.speed))
+}
+
+/// What is said of a weld that the prefilters take off its path.
+pub(super) fn off_weld<const N: usize>(piece: &Piece<N>) -> Option<String> {
+    let off = piece.off * 1e3;
+    (piece.info.arc && piece.off > WORTH_A_WORD)
+        .then(|| format!("the prefilter takes the tool up to {off:.3} mm off this path"))
+}
+
+/// What a motion is held against when it comes out of the prefilters: the programmed speed is there only once all that is inside has it.
+pub(super) fn lagging(info: &SegmentInfo, smear: Option<&Smear>) -> SegmentInfo {
+    let Some((smear, speed)) = smear.zip(info.speed) else { return *info };
+    let (enter, leave) = (speed * (smear.length - smear.delay), speed * smear.delay);
+    let constant_part = info.constant_part.map(|[from, to]| [from + enter, to - leave]);
+    SegmentInfo { constant_part: constant_part.filter(|[from, to]| from < to), ..*info }
+}
+
+impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
+    /// The speeds not to pass on account of what prefilters do to the way ahead. Takes note of how far they take the tool off what lies
+    /// before `to`.
+    pub(super) fn caps(&mut self, joints: &mut PathJoints<'_, N, K>, to: f64) -> Vec<Cap> {
+        let Some(smear) = self.run.smear else { return Vec::new() };
+        let mut caps = std::mem::take(&mut self.run.caps);
+        let mut bends = Vec::new();
+        for (index, (from, piece)) in self.run.placed().enumerate() {
+            let length = piece.path.length().min(joints.length() - from);
+            if length <= 0.0 {
+                break;
+            }
+            let mut bend = |s: f64| {
+                let jet = joints.jet(s).ok()?;
+                Some(bend(&self.arm.kinematics, &jet, &self.tool.flange_from_tcp))
+            };
+            if piece.is_corner() {
+                // Its cap is known since it came into sight.
+                let places = places(&piece.path, 0.0, length).filter(|_| !piece.begun);
+                let greatest = places.filter_map(|s| bend(from + s)).fold(Bend::default(), Bend::greater);
+                caps.push(smear.cap([from, from + length], smear.speed(&greatest, piece.slack)));
+                continue;
+            }
+            for s in places(&piece.link.path, piece.offset, piece.offset + length) {
+                let place = from + s - piece.offset;
+                let Some(bend) = bend(place) else { continue };
+                caps.push(smear.cap([place, place], smear.speed(&bend, piece.slack)));
+                if place < to {
+                    bends.push((index, place, bend, piece.limits.speed));
+                }
+            }
+        }
+        let fastest = self.run.fastest();
+        caps.retain(|cap| cap.speed < fastest);
+        for (index, place, bend, speed) in bends {
+            self.run.note_off(index, smear.error(&bend, speed.min(least(&caps, place, place))));
+        }
+        caps
+    }
+
+    /// Remarks on the pieces that the caps slow down before `end`.
+    pub(super) fn remark_caps(
+        &mut self,
+        remarks: &mut Remarks,
+        caps: &[Cap],
+        end: f64,
+    ) -> Result<(), PlanError> {
+        let mut refused = None;
+        for (index, (from, piece)) in self.run.placed().take_while(|(from, _)| *from < end).enumerate() {
+            let speed = least(caps, from, (from + piece.path.length()).min(end));
+            if speed >= piece.limits.speed * (1.0 - SAME_SPEED) || piece.is_slowed() {
+                continue;
+            }
+            match self.cap_text(piece, speed) {
+                Ok(text) => remarks.add(index, text),
+                Err(problem) => {
+                    refused = Some((index, problem));
+                    break;
+                }
+            }
+        }
+        refused.map_or(Ok(()), |(index, problem)| Err(self.give_up(index, problem)))
+    }
+
+    /// A slowdown on account of prefilters in words. With the arc on it may be refused.
+    fn cap_text(&self, piece: &Piece<N>, speed: f64) -> Result<String, Problem> {
+        let (_, unit, factor) = units(&piece.path);
+        let text = format!(
+            "slows from {:.1} to {:.1} {unit}{}: faster, the prefilter would take the tool farther off the path or a corner than permitted",
+            piece.limits.speed * factor,
+            speed * factor,
+            if piece.info.arc { " with the arc on" } else { "" },
+        );
+        if self.refuses_slowdown(piece, speed) { Err(Problem::WeldSlowdown(text)) } else { Ok(text) }
+    }
+}
