@@ -1,15 +1,15 @@
 //! One axis, whatever its control and limits: brake first, then the motion proper.
 
-use super::brake::Brake;
+use super::brake::{Brake, Turn};
 use super::error::Error;
 use super::extremal::Problem;
 use super::fixed_duration::{Draft, Piece, Ramps};
 use super::input::{Control, Input};
-use super::number::{NOISE, between, larger};
+use super::number::{NOISE, between, larger, smaller};
 use super::profile::{Order, Point, Profile};
 use super::rest_to_rest::RestToRest;
 use super::second_order::{Cruise, SecondOrder};
-use super::third_order::{Arrival, ThirdOrder};
+use super::third_order::{Arrival, Passage, ThirdOrder};
 
 /// The problem of one axis, in the user's units.
 #[derive(Debug, Clone, Copy)]
@@ -93,6 +93,10 @@ pub(super) enum Solution {
     Ramps(Ramps),
     /// The mixture that arrives after this time, without the brake: rare, and too large to be kept for every axis.
     Mixture(f64),
+    /// Before the brake is complete, from where it turns.
+    FromTurn(Arrival),
+    /// Likewise the mixture that arrives this time after the turn.
+    MixtureFromTurn(f64),
     Second(Cruise),
     Only,
 }
@@ -105,6 +109,8 @@ pub(super) struct Axis {
     brake: f64,
     /// State after the brake, in the user's units.
     start: Point,
+    /// Where on the brake the target may be within reach.
+    turn: Option<Turn>,
     /// The jerk limit, where the problem is normalised by it, negative where it is mirrored; otherwise 1.
     scale: f64,
     /// Of the coordinates.
@@ -119,6 +125,7 @@ impl Axis {
         motion: Motion::Only(0.0),
         brake: 0.0,
         start: Point { p: 0.0, v: 0.0, a: 0.0 },
+        turn: None,
         scale: 0.0,
         size: 0.0,
         at_target: false,
@@ -188,7 +195,7 @@ impl Axis {
             self.motion = Motion::Rest(RestToRest::new(&problem));
             return;
         }
-        Brake { problem: &mut problem, profile, now: &mut self.start, scale: self.scale }.apply();
+        self.turn = Brake { problem: &mut problem, profile, now: &mut self.start, scale: self.scale }.apply();
         self.motion = Motion::Third(problem, NOISE * input.coordinates / input.jerk);
     }
 
@@ -237,6 +244,12 @@ impl Axis {
             *solution = Solution::AtOnce;
             return 0.0;
         }
+        if let Some(turn) = &self.turn
+            && let Some(arrival) = self.beyond_turn(turn).earliest_on_island(larger(from - turn.time, 0.0))
+        {
+            *solution = Solution::FromTurn(arrival);
+            return turn.time + arrival.t;
+        }
         let from = larger(from - self.brake, 0.0);
         let t = match &self.motion {
             Motion::Third(problem, coordinates) => {
@@ -263,16 +276,48 @@ impl Axis {
         self.brake + t
     }
 
+    /// The first arrival if the target were nearer by the rounding of positions.
+    #[cold]
+    pub(super) fn earliest_but_for_rounding(&self, solution: &mut Solution) -> Option<f64> {
+        let from_end = |arrival: Arrival| Arrival { from_end: true, ..arrival };
+        if let Some(turn) = &self.turn
+            && let third = self.beyond_turn(turn)
+            && let Some(arrival) = third.earliest_on_island(0.0)
+        {
+            let arrival = third.nearer(&arrival).earliest_on_island(0.0)?;
+            *solution = Solution::FromTurn(from_end(arrival));
+            return Some(turn.time + arrival.t);
+        }
+        let arrival = match &self.motion {
+            Motion::Third(problem, coordinates) => {
+                let third = ThirdOrder::new(*problem, *coordinates);
+                third.nearer(&third.earliest(0.0)).earliest(0.0)
+            }
+            Motion::Rest(rest) => rest.nearer(NOISE * self.size / self.scale.abs()).earliest(),
+            _ => return None,
+        };
+        *solution = Solution::Earliest(from_end(arrival));
+        Some(self.brake + arrival.t)
+    }
+
     /// The arrival at `t`, if the axis can arrive then.
     pub(super) fn at(&self, t: f64) -> Option<Solution> {
+        if let Some(turn) = &self.turn
+            && let Some(passage) = self.beyond_turn(turn).at_on_island(t - turn.time)
+        {
+            return Some(match passage {
+                Passage::Mean(_) => Solution::MixtureFromTurn(t - turn.time),
+                Passage::Extreme(arrival) => Solution::FromTurn(arrival),
+            });
+        }
         let t = t - self.brake;
         match &self.motion {
             Motion::Third(problem, coordinates) => match Ramps::arriving(problem, t) {
                 Some(ramps) => Some(Solution::Ramps(ramps)),
-                None => {
-                    let possible = ThirdOrder::new(*problem, *coordinates).mixture(t);
-                    possible.map(|_| Solution::Mixture(t))
-                }
+                None => ThirdOrder::new(*problem, *coordinates).at(t).map(|passage| match passage {
+                    Passage::Mean(_) => Solution::Mixture(t),
+                    Passage::Extreme(arrival) => Solution::Earliest(arrival),
+                }),
             },
             Motion::Rest(rest) => Some(Solution::Earliest(rest.at(t))),
             Motion::Second(second) | Motion::Velocity(second) => second.at(t).map(Solution::Second),
@@ -289,9 +334,17 @@ impl Axis {
             (Motion::Rest(_), Solution::Earliest(arrival)) => self.draft(profile).arrival(0.0, 0.0, arrival),
             (Motion::Third(problem, _), Solution::Ramps(ramps)) => self.draft(profile).ramps(problem, ramps),
             (Motion::Third(problem, coordinates), Solution::Mixture(t)) => {
-                let mixture = ThirdOrder::new(*problem, *coordinates).mixture(*t);
-                mixture.is_some_and(|mixture| self.draft(profile).mixture(problem, &mixture))
+                let passage = ThirdOrder::new(*problem, *coordinates).at(*t);
+                self.draft(profile).passage(problem, passage)
             }
+            (Motion::Third(..), Solution::FromTurn(arrival)) => self.turn.is_some_and(|turn| {
+                let Problem { a0, af, .. } = turn.problem;
+                self.write_from(&turn, profile, |draft| draft.arrival(a0, af, arrival))
+            }),
+            (Motion::Third(..), Solution::MixtureFromTurn(t)) => self.turn.is_some_and(|turn| {
+                let passage = self.beyond_turn(&turn).at_on_island(*t);
+                self.write_from(&turn, profile, |draft| draft.passage(&turn.problem, passage))
+            }),
             (Motion::Second(second), Solution::Second(cruise)) => self.write_second(second, cruise, profile),
             (Motion::Velocity(second), Solution::Second(cruise)) => {
                 self.write_velocity(second, cruise, profile)
@@ -303,11 +356,35 @@ impl Axis {
                 true
             }
         };
+        #[cfg(feature = "std")]
+        if !joined { extern crate std; std::eprintln!("write {solution:?} brake {} turn {:?} motion {:?} target {:?} phases {:?}", self.brake, self.turn, self.motion, profile.target(), profile.phases()); }
         if joined { Ok(()) } else { Err(Error::OutOfRange { axis }) }
     }
 
     fn draft<'a>(&self, profile: &'a mut Profile) -> Draft<'a> {
         Draft { profile, now: self.start, scale: self.scale, size: self.size }
+    }
+
+    /// The problem from the turn of the brake on.
+    fn beyond_turn(&self, turn: &Turn) -> ThirdOrder {
+        let coordinates = if let Motion::Third(_, coordinates) = self.motion { coordinates } else { 0.0 };
+        ThirdOrder::new(turn.problem, coordinates)
+    }
+
+    /// Goes on from the turn of the brake. What comes before the velocity is inside its limits is the brake.
+    fn write_from(
+        &self,
+        turn: &Turn,
+        profile: &mut Profile,
+        write: impl FnOnce(&mut Draft<'_>) -> bool,
+    ) -> bool {
+        profile.cut(turn.phases);
+        let mut draft = Draft { profile, now: turn.start, scale: self.scale, size: self.size };
+        let joined = write(&mut draft);
+        let Problem { v_max, v_min, .. } = turn.problem;
+        let (one, other) = (v_max * self.scale, v_min * self.scale);
+        profile.brake_until_within(turn.phases, smaller(one, other), larger(one, other));
+        joined
     }
 
     /// Position control without jerk limit: two ramps and a cruise.

@@ -18,6 +18,19 @@ pub(super) struct Brake<'a> {
     pub(super) scale: f64,
 }
 
+/// A state on the brake that no motion within the limits leaves for good, but from which the target may be reached before a limit is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Turn {
+    /// The problem from here on.
+    pub(super) problem: Problem,
+    /// The state, in the user's units.
+    pub(super) start: Point,
+    /// Time since the brake began.
+    pub(super) time: f64,
+    /// Phases of the brake until here.
+    pub(super) phases: usize,
+}
+
 impl Brake<'_> {
     /// Appends a piece and moves the start to its end, with the acceleration `a` there.
     fn push(&mut self, duration: f64, jerk: f64, a: f64) {
@@ -31,25 +44,40 @@ impl Brake<'_> {
         problem.a0 = a;
     }
 
-    /// Moves the start of the problem inside its limits.
-    pub(super) fn apply(&mut self) {
+    /// Moves the start of the problem inside its limits. Says where on the way the target may be within reach.
+    pub(super) fn apply(&mut self) -> Option<Turn> {
         self.apply_acceleration();
         let above = too_fast(self.problem);
         let below = too_fast(&self.problem.mirror());
-        if above && (self.problem.a0 > 0.0 || !below) {
-            for step in slow_down(self.problem) {
-                self.push(step.duration, step.jerk, step.acceleration);
-            }
-            self.problem.v0 = self.problem.v_max;
-        } else if below {
-            for step in slow_down(&self.problem.mirror()) {
-                self.push(step.duration, -step.jerk, -step.acceleration);
-            }
-            self.problem.v0 = self.problem.v_min;
-        } else {
-            return;
+        if !(above || below) {
+            return None;
         }
+        let Problem { a0, v_max, v_min, .. } = *self.problem;
+        let downward = above && (a0 > 0.0 || !below);
+        let sign = if downward { 1.0 } else { -1.0 };
+        let mut turn = self.turn(sign);
+        let slowing = if downward { slow_down(self.problem) } else { slow_down(&self.problem.mirror()) };
+        for step in [slowing.fall, slowing.hold] {
+            self.push(step.duration, sign * step.jerk, sign * step.acceleration);
+        }
+        if let Some(rise) = slowing.rise {
+            turn = turn.or_else(|| self.turn(-sign));
+            self.push(rise.duration, sign * rise.jerk, sign * rise.acceleration);
+        }
+        self.problem.v0 = if downward { v_max } else { v_min };
         self.now.v = self.problem.v0 * self.scale;
+        turn
+    }
+
+    /// The present state, if both accelerations have the sign given: a motion that passes through zero acceleration would pass a limit.
+    fn turn(&self, sign: f64) -> Option<Turn> {
+        let Problem { a0, af, .. } = *self.problem;
+        (sign * a0 > 0.0 && sign * af > 0.0).then(|| Turn {
+            problem: *self.problem,
+            start: *self.now,
+            time: self.profile.duration(),
+            phases: self.profile.phases().len(),
+        })
     }
 
     /// Brings the acceleration inside its limits, whatever the velocity.
@@ -79,9 +107,18 @@ struct Step {
     acceleration: f64,
 }
 
+/// The pieces that bring the velocity down to its upper limit.
+#[derive(Debug, Clone, Copy)]
+struct Slowing {
+    fall: Step,
+    hold: Step,
+    /// Where the lower velocity limit is near, the turn away from it; before it the axis has as much deceleration as does not lead below.
+    rise: Option<Step>,
+}
+
 /// Brings the velocity down to its upper limit, with as much deceleration there as the limits allow and as does not lead
 /// below the lower velocity limit later.
-fn slow_down(problem: &Problem) -> [Step; 3] {
+fn slow_down(problem: &Problem) -> Slowing {
     let Problem { v0, a0, v_max, v_min, a_min, .. } = *problem;
     let m = -a_min;
     let steepest = sqrt(2.0 * (v_max - v_min));
@@ -90,15 +127,18 @@ fn slow_down(problem: &Problem) -> [Step; 3] {
     let falling = sqrt(larger(a0 * a0 + 2.0 * excess, 0.0));
     let step = |duration: f64, jerk, acceleration| Step { duration, jerk, acceleration };
     if falling <= smaller(m, steepest) {
-        let nothing = step(0.0, 0.0, -falling);
-        [step(a0 + falling, -1.0, -falling), nothing, nothing]
+        Slowing { fall: step(a0 + falling, -1.0, -falling), hold: step(0.0, 0.0, -falling), rise: None }
     } else if m <= steepest {
         let left = excess + 0.5 * (a0 - m) * (a0 + m);
-        [step(a0 + m, -1.0, -m), step(left / m, 0.0, -m), step(0.0, 0.0, -m)]
+        Slowing { fall: step(a0 + m, -1.0, -m), hold: step(left / m, 0.0, -m), rise: None }
     } else {
         let lost = excess + 0.5 * (a0 * a0 + steepest * steepest); // n², did the valley have no limit
         let n = between(sqrt(larger(lost, 0.0)), steepest, m);
         let hold = if n < m { 0.0 } else { (lost - m * m) / m };
-        [step(a0 + n, -1.0, -n), step(hold, 0.0, -n), step(n - steepest, 1.0, -steepest)]
+        Slowing {
+            fall: step(a0 + n, -1.0, -n),
+            hold: step(hold, 0.0, -n),
+            rise: Some(step(n - steepest, 1.0, -steepest)),
+        }
     }
 }

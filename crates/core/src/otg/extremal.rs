@@ -170,6 +170,10 @@ impl Family {
             }
             family.start = larger(family.parameter(r_squared, r), -af);
         }
+        // Without C a valley above zero is as high as the peak: all of them are one motion, and what comes next is a real valley.
+        if c == 0.0 {
+            family.start = larger(family.start, 0.0);
+        }
         family
     }
 
@@ -229,6 +233,30 @@ impl Family {
     #[inline]
     pub(super) fn at_start(&self) -> Extremal {
         self.at(self.start)
+    }
+
+    /// The start's motion, longer by the time `more`, as it would be if the velocities were others by up to `noise`.
+    ///
+    /// Its first rise, or its last, has no duration. With it goes the time of the valley, or of the peak, by 1/n or 1/x of what is
+    /// added to the velocities; by no more than the root of it where that is zero.
+    #[cold]
+    pub(super) fn moved_start(&self, start: &Extremal, more: f64, noise: f64) -> Option<Extremal> {
+        let at_first = self.start > -self.af;
+        let turning = if at_first { start.n } else { start.x };
+        let bound = noise / larger(turning, sqrt(noise));
+        if more.is_nan() || more.abs() > bound {
+            return None;
+        }
+        let mut moved = Extremal { p: start.p + start.slope * more, t: start.t + more, ..*start };
+        let half = 0.5 * more;
+        if at_first {
+            moved.e += half;
+            moved.n = if start.e > start.n { start.n } else { moved.e };
+        } else {
+            moved.t_peak += more;
+            moved.x = if start.t_peak > 2.0 * start.x { start.x } else { start.x + half };
+        }
+        Some(moved)
     }
 
     /// First and last motion of the island, an interval of possible times before the main arc.
@@ -429,13 +457,18 @@ impl Family {
             }
             // dp/de = slope · dt/de, and dt/de = 2 (1 + n/x).
             let step = excess * now.x / (2.0 * now.slope * (now.x + now.n));
+            // Near the bracket's start rounding may lead before it; the root may be the start itself.
             let mut next = now.e - step;
-            if !(next >= low && next <= high) {
+            if next < low && now.e > low {
+                next = low;
+            }
+            let inside = next >= low && next <= high;
+            if !inside {
                 next = if high < f64::INFINITY { 0.5 * (low + high) } else { 2.0 * now.e + now.x };
             }
             let moved = (next - now.e).abs();
             now = self.at(next);
-            if moved <= LAST_STEP * (now.x + now.n) {
+            if inside && moved <= LAST_STEP * (now.x + now.n) {
                 break;
             }
         }

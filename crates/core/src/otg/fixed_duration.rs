@@ -6,7 +6,7 @@
 use super::extremal::{Problem, Shape};
 use super::number::{SIXTH, between, larger, smaller};
 use super::profile::{Point, Profile};
-use super::third_order::Arrival;
+use super::third_order::{Arrival, Passage};
 use crate::math::float::sqrt;
 
 /// A piece of constant jerk.
@@ -65,6 +65,9 @@ impl Draft<'_> {
     pub(super) fn arrival(&mut self, a0: f64, af: f64, arrival: &Arrival) -> bool {
         let Arrival { sign, shape, .. } = *arrival;
         let motion = Extreme { shape, sign, a0, af };
+        if arrival.from_end {
+            return self.backward(&motion.pieces());
+        }
         let [rise, hold, fall, end_of_fall, last_hold, last_rise] = motion.pieces();
         for piece in [rise, hold, fall] {
             self.forward(piece.duration, piece.jerk, piece.acceleration);
@@ -90,8 +93,17 @@ impl Draft<'_> {
         ])
     }
 
+    /// A motion of given duration. False if there is none, or the numbers have overflowed.
+    pub(super) fn passage(&mut self, problem: &Problem, passage: Option<Passage>) -> bool {
+        match passage {
+            Some(Passage::Mean(mixture)) => self.mixture(problem, &mixture),
+            Some(Passage::Extreme(arrival)) => self.arrival(problem.a0, problem.af, &arrival),
+            None => false,
+        }
+    }
+
     /// The mean of two extreme motions. False if the numbers have overflowed.
-    pub(super) fn mixture(&mut self, problem: &Problem, mixture: &Mixture) -> bool {
+    fn mixture(&mut self, problem: &Problem, mixture: &Mixture) -> bool {
         let Problem { a0, af, .. } = *problem;
         let up = Extreme { shape: mixture.up, sign: 1.0, a0, af };
         let down = Extreme { shape: mixture.down, sign: -1.0, a0, af };

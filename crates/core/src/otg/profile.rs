@@ -192,6 +192,20 @@ impl Profile {
         self.brake_len = self.len;
     }
 
+    /// Takes back all phases but the first few.
+    pub(super) fn cut(&mut self, phases: usize) {
+        self.len = phases.min(self.len);
+        self.duration = self.phases().iter().map(|phase| phase.duration).sum();
+    }
+
+    /// Says that the phases up to the one that brings the velocity between two limits for good are the brake, and the first `least` in
+    /// any case.
+    pub(super) fn brake_until_within(&mut self, least: usize, min: f64, max: f64) {
+        let outside = |phase: &Phase| phase.velocity < min || phase.velocity > max;
+        let last = self.phases().iter().rposition(outside);
+        self.brake_len = last.map_or(0, |last| last + 1).max(least);
+    }
+
     /// This profile is s(t) along a line; the motion of an axis that has the share `direction` of it.
     pub(super) fn along(&self, current: Point, target: Point, control: Control, direction: f64) -> Self {
         let mut profile = *self;

@@ -60,6 +60,11 @@ impl RestToRest {
         Self { distance: displacement, v_max, rise: a_max, fall: -a_min }
     }
 
+    /// The same with a shorter way.
+    pub(super) fn nearer(&self, by: f64) -> Self {
+        Self { distance: larger(self.distance - by, 0.0), ..*self }
+    }
+
     /// The first arrival.
     pub(super) fn earliest(&self) -> Arrival {
         let (w, p) = (self.v_max, self.distance);
@@ -96,7 +101,7 @@ impl RestToRest {
             valley: down.peak,
             valley_hold: down.hold,
         };
-        Arrival { t: up.duration() + down.duration(), sign: 1.0, shape }
+        Arrival { t: up.duration() + down.duration(), sign: 1.0, shape, from_end: false }
     }
 
     /// The highest velocity of the shortest motion without a velocity limit: p = w/2 · (both ramps' durations).

@@ -46,20 +46,27 @@ impl Plan {
         self.earliest = axis.earliest(0.0, &mut self.solution);
     }
 
-    /// Has the axis arrive at `t`, where it can; otherwise as soon after it as it can. Says when.
+    /// Has the axis arrive at `t`, if it can.
     ///
     /// The solution for the earliest time is kept as long as it serves, so that the axis that sets the duration keeps its own.
-    fn arrive(&mut self, axis: &Axis, t: f64) -> f64 {
+    fn arrive(&mut self, axis: &Axis, t: f64) -> bool {
         if (self.earliest - t).abs() <= 2.0 * SAME * t {
-            return t;
+            return true;
         }
         if self.earliest > t {
-            return self.earliest;
+            return false;
         }
-        match axis.at(t) {
-            Some(solution) => self.solution = solution,
-            None if t - self.earliest <= ALMOST * t => {}
-            None => self.earliest = axis.earliest(t, &mut self.solution),
+        let solution = axis.at(t);
+        if let Some(solution) = solution {
+            self.solution = solution;
+        }
+        solution.is_some()
+    }
+
+    /// Has the axis arrive as soon after `t` as it can. Says when.
+    fn arrive_after(&mut self, axis: &Axis, t: f64) -> f64 {
+        if self.earliest <= t {
+            self.earliest = axis.earliest(t, &mut self.solution);
         }
         larger(self.earliest, t)
     }
@@ -68,37 +75,68 @@ impl Plan {
 /// The first duration at which all axes that arrive together can, and those that may arrive early have arrived.
 ///
 /// Each round moves the duration to the end of an interval in which some axis cannot arrive. An axis has two of these at most
-/// after its least duration, so that `3 N + 3` rounds are enough; with a step each round passes one too.
+/// after its least duration, so that `3 N + 3` rounds are enough; with a step each round passes one too. Another N are those in which an
+/// axis hurries.
 pub(super) fn common_duration<const N: usize>(
     axes: &[Axis; N],
     plans: &mut [Plan; N],
     roles: &[Role; N],
     demand: &Demand,
 ) -> Result<f64, Error> {
-    let mut t = 0.0_f64;
-    let mut last = 0;
+    let (mut t, mut last) = latest(plans, roles);
+    let mut hurried = [false; N];
+    let mut settled = [false; N];
+    for _ in 0..4 * N + 3 {
+        t = demand.next(t);
+        if !t.is_finite() {
+            break;
+        }
+        let together = |axis: &usize| roles[*axis] == Role::Together;
+        let Some(late) =
+            (0..N).filter(together).find(|&axis| !settled[axis] && !plans[axis].arrive(&axes[axis], t))
+        else {
+            return Ok(t);
+        };
+        if late != last && !hurried[last] && plans[last].earliest == t {
+            hurried[last] = true;
+            if let Some(plan) = hurry(&axes[last], &axes[late], plans[late].earliest, t) {
+                for axis in (0..N).filter(together) {
+                    plans[axis].find_earliest(&axes[axis]);
+                }
+                plans[last] = plan;
+                (t, last) = latest(plans, roles);
+                continue;
+            }
+        }
+        if t - plans[late].earliest <= ALMOST * t && plans[late].earliest <= t {
+            plans[late].find_earliest(&axes[late]);
+            settled[late] = true;
+            continue;
+        }
+        (t, last) = (plans[late].arrive_after(&axes[late], t), late);
+    }
+    Err(if t.is_nan() { Error::OutOfRange { axis: last } } else { Error::Unreachable { axis: last } })
+}
+
+/// The largest of the least durations, and whose it is.
+fn latest<const N: usize>(plans: &[Plan; N], roles: &[Role; N]) -> (f64, usize) {
+    let (mut t, mut last) = (0.0_f64, 0);
     for axis in 0..N {
         let counts = matches!(roles[axis], Role::Together | Role::Early);
         if counts && (plans[axis].earliest > t || plans[axis].earliest.is_nan()) {
             (t, last) = (plans[axis].earliest, axis);
         }
     }
-    for _ in 0..3 * N + 3 {
-        t = demand.next(t);
-        if !t.is_finite() {
-            break;
-        }
-        let mut settled = true;
-        for axis in (0..N).filter(|&axis| roles[axis] == Role::Together) {
-            let arrival = plans[axis].arrive(&axes[axis], t);
-            if arrival > t {
-                (t, last, settled) = (arrival, axis, false);
-                break;
-            }
-        }
-        if settled {
-            return Ok(t);
-        }
-    }
-    Err(if t.is_nan() { Error::OutOfRange { axis: last } } else { Error::Unreachable { axis: last } })
+    (t, last)
+}
+
+/// On the last stretch of a motion that is planned anew on every cycle all axes have one time but for rounding, and an axis that cannot
+/// arrive at any later one would have to come round again. If it can arrive at what is the least time `t` of the other but for the
+/// rounding of positions, the other takes that.
+#[cold]
+fn hurry(setting: &Axis, waiting: &Axis, earliest: f64, t: f64) -> Option<Plan> {
+    let mut plan = Plan::AT_ONCE;
+    plan.earliest = setting.earliest_but_for_rounding(&mut plan.solution)?;
+    let possible = earliest >= plan.earliest || waiting.at(plan.earliest).is_some();
+    (plan.earliest < t && possible).then_some(plan)
 }

@@ -5,7 +5,7 @@
 
 use super::extremal::{Extremal, Family, Problem, Shape};
 use super::fixed_duration::Mixture;
-use super::number::{NOISE, larger};
+use super::number::{NOISE, larger, smaller};
 
 /// The axis' problem, ready to be asked when the axis can arrive.
 #[derive(Debug, Clone, Copy)]
@@ -28,6 +28,18 @@ pub(super) struct Arrival {
     pub(super) t: f64,
     pub(super) sign: f64,
     pub(super) shape: Shape,
+    /// The start differs from the motion's by rounding: the motion is reckoned back from the target to there, so that the difference does
+    /// not stay.
+    pub(super) from_end: bool,
+}
+
+/// A motion of given duration.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Passage {
+    /// The weighted mean of the two extreme ones.
+    Mean(Mixture),
+    /// One of them.
+    Extreme(Arrival),
 }
 
 /// The two extreme motions of one duration; backward as seen in the mirror.
@@ -81,41 +93,85 @@ impl ThirdOrder {
                 Side::Below => self.down_to(&families.down, &span.down),
             };
         }
-        // At the start both families have the same motion.
-        let resolution = self.resolution(self.start.t);
-        if p > self.start.p + resolution {
-            self.up_to(&self.start)
-        } else if p < self.start.p - resolution {
-            let down = self.down();
-            self.down_to(&down, &down.at_start())
+        self.earliest_from_start(p)
+    }
+
+    /// The same problem, with the target nearer by the rounding of positions as `arrival` comes to it.
+    pub(super) fn nearer(&self, arrival: &Arrival) -> Self {
+        let mut nearer = *self;
+        nearer.problem.displacement -= arrival.sign * self.resolution(arrival.t);
+        nearer
+    }
+
+    /// The first arrival on the main arc. At its start both families have the same motion.
+    fn earliest_from_start(&self, p: f64) -> Arrival {
+        let start = &self.start;
+        if (p - start.p).abs() <= self.resolution(start.t) {
+            return Arrival { from_end: true, ..Arrival::up(&self.up, start) };
+        }
+        // Where the way leads on towards p, the time grows from the start's on as p does. Otherwise the axis has to come round again, and must
+        // not do so for a rounding error.
+        if p > start.p {
+            let round_again = start.slope <= 0.0;
+            self.near_start(p, round_again).unwrap_or_else(|| self.up_to(start))
         } else {
-            Arrival::up(&self.up, &self.start)
+            let down = self.down();
+            let down_start = down.at_start();
+            let round_again = down_start.slope <= 0.0;
+            self.near_start(p, round_again).unwrap_or_else(|| self.down_to(&down, &down_start))
         }
     }
 
-    /// The mean of the two extreme motions that arrives after the time `t`, if it is a possible one.
-    pub(super) fn mixture(&self, t: f64) -> Option<Mixture> {
+    /// The motion at the start, moved by the rounding of the velocities so that it leads to `p`.
+    fn near_start(&self, p: f64, round_again: bool) -> Option<Arrival> {
+        if !round_again {
+            return None;
+        }
+        let near = self.up.moved_start(&self.start, (p - self.start.p) / self.start.slope, self.rounding)?;
+        Some(Arrival { from_end: true, ..Arrival::up(&self.up, &near) })
+    }
+
+    /// The extreme motion that arrives after the time `t`, if one does but for rounding.
+    #[cold]
+    fn nearest_at(&self, t: f64, span: Option<&Span>) -> Option<Arrival> {
+        let p = self.problem.displacement;
+        let resolution = self.resolution(t);
+        if let Some(span) = span {
+            let arrival = self.families().nearest(p, span);
+            let off = smaller((span.up.p - p).abs(), (span.down.p + p).abs());
+            return (off <= resolution).then_some(Arrival { from_end: true, ..arrival });
+        }
+        let moved = self.up.moved_start(&self.start, t - self.start.t, self.rounding)?;
+        let close = (moved.p - p).abs() <= resolution;
+        close.then_some(Arrival { from_end: true, ..Arrival::up(&self.up, &moved) })
+    }
+
+    /// As [`Self::at`], before the times that are possible for good.
+    pub(super) fn at_on_island(&self, t: f64) -> Option<Passage> {
+        if t < self.start.t { self.at(t) } else { None }
+    }
+
+    /// The motion that arrives after the time `t`, if it is a possible one: between the two extreme ones, or one of them.
+    pub(super) fn at(&self, t: f64) -> Option<Passage> {
         let families = self.families();
         let on_island = t < self.start.t;
-        if on_island {
-            let (first, last) = families.island()?;
-            if t < first.t || t > last.t {
-                return None;
-            }
+        if on_island && !families.island().is_some_and(|(first, last)| first.t <= t && t <= last.t) {
+            return self.nearest_at(t, None).map(Passage::Extreme);
         }
-        let Span { up, down } = families.span(t, on_island);
+        let span = families.span(t, on_island);
+        let Span { up, down } = span;
         let p = self.problem.displacement;
+        if p > up.p || -p > down.p {
+            return self.nearest_at(t, Some(&span)).map(Passage::Extreme);
+        }
         let reach = up.p + down.p;
-        let possible = p <= up.p && -p <= down.p;
-        possible.then(|| {
-            let share = if reach > 0.0 { (p + down.p) / reach } else { 1.0 };
-            Mixture { up: families.up.shape(&up), down: families.down.shape(&down), share }
-        })
+        let share = if reach > 0.0 { (p + down.p) / reach } else { 1.0 };
+        Some(Passage::Mean(Mixture { up: families.up.shape(&up), down: families.down.shape(&down), share }))
     }
 
     /// Before the times that are possible for good there may be an interval of possible ones, an island, if the acceleration need not
     /// change its sign.
-    fn earliest_on_island(&self, from: f64) -> Option<Arrival> {
+    pub(super) fn earliest_on_island(&self, from: f64) -> Option<Arrival> {
         let Problem { displacement: p, v0, a0, vf, af, .. } = self.problem;
         // The velocity must change by more than on the straight way from a₀ to a_f, and by less than on the way via zero. (Not by
         // rounding: the families decide.)
@@ -210,10 +266,10 @@ impl Families {
 
 impl Arrival {
     fn up(family: &Family, extremal: &Extremal) -> Self {
-        Self { t: extremal.t, sign: 1.0, shape: family.shape(extremal) }
+        Self { t: extremal.t, sign: 1.0, shape: family.shape(extremal), from_end: false }
     }
 
     fn down(family: &Family, extremal: &Extremal) -> Self {
-        Self { t: extremal.t, sign: -1.0, shape: family.shape(extremal) }
+        Self { t: extremal.t, sign: -1.0, shape: family.shape(extremal), from_end: false }
     }
 }
