@@ -12,6 +12,7 @@
 //! | [`otg`] | the trajectory generator: any state to any state in the least time, jerk-limited, N axes |
 //! | [`path`] | lines, arcs, blends and splines with orientation, as functions of the path coordinate; corners |
 //! | [`timed`] | motion of third order in a given time, and what a new target does to it |
+//! | [`weave`] | periodic motion of the torch about the seam |
 //! | [`vibration`] | prefilters against a flexible mode; corners that keep their error under them |
 //!
 //! # Units and frames
@@ -38,3 +39,4 @@ pub mod path;
 pub mod safety;
 pub mod timed;
 pub mod vibration;
+pub mod weave;

@@ -57,6 +57,27 @@ impl Taylor {
         c1.abs().max(c2.abs()).max(c3.abs())
     }
 
+    /// f(t/c): the same function of a parameter that runs c times as far.
+    #[inline]
+    #[must_use]
+    pub fn stretched(self, c: f64) -> Self {
+        let [a0, a1, a2, a3] = self.0;
+        let r = 1.0 / c;
+        Self([a0, a1 * r, a2 * r * r, a3 * r * r * r])
+    }
+
+    /// 1/f, for f₀ ≠ 0.
+    #[inline]
+    #[must_use]
+    pub fn reciprocal(self) -> Self {
+        let [a0, a1, a2, a3] = self.0;
+        let b0 = 1.0 / a0;
+        let b1 = -b0 * (a1 * b0);
+        let b2 = -b0 * (a1 * b1 + a2 * b0);
+        let b3 = -b0 * (a1 * b2 + a2 * b1 + a3 * b0);
+        Self([b0, b1, b2, b3])
+    }
+
     /// f².
     #[inline]
     #[must_use]
@@ -184,6 +205,8 @@ mod tests {
         close(EXP.squared(), [1.0, 2.0, 2.0, 8.0 / 6.0]);
         close(EXP * EXP, [1.0, 2.0, 2.0, 8.0 / 6.0]);
         close(EXP.sqrt_from(1.0), [1.0, 0.5, 0.125, 1.0 / 48.0]);
+        close(EXP.reciprocal(), [1.0, -1.0, 0.5, -1.0 / 6.0]);
+        close(EXP.stretched(2.0), [1.0, 0.5, 0.125, 1.0 / 48.0]);
         close(EXP.sqrt_from(-1.0), [-1.0, -0.5, -0.125, -1.0 / 48.0]);
         assert_eq!(EXP.derivatives(), [1.0, 1.0, 1.0]);
     }

@@ -92,6 +92,7 @@ pub(super) fn path(
         orientation: Orientation::Quintic(turn),
         length,
         measure: Measure::Length,
+        weave: None,
     })
 }
 

@@ -15,6 +15,7 @@ mod orientation;
 mod quintic;
 mod quintic_turn;
 mod rotation_vector;
+mod seam_frame;
 mod spline;
 mod timing;
 
@@ -23,10 +24,12 @@ pub use curve::{Arc, ArcError, Curve};
 pub use orientation::{Geodesic, Orientation, Through};
 pub use quintic::Quintic;
 pub use quintic_turn::QuinticTurn;
+pub use seam_frame::{SeamFrame, displaced};
 pub use spline::{SplineError, spline};
 pub use timing::{PathState, TimingPiece};
 
 use crate::geometry::{Pose, PoseJet, Rotation};
+use crate::weave::Weave;
 
 /// Positions closer than this are one point: 1 nm.
 pub const SAME_POSITION: f64 = 1e-9;
@@ -42,13 +45,22 @@ pub enum Measure {
     Angle,
 }
 
-/// A segment of a tool path: where, and how turned, at each value of the path coordinate.
+/// A segment of a tool path: where, and how turned, at each value of the path coordinate. A weave may go about it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Path {
     curve: Curve,
     orientation: Orientation,
     length: f64,
     measure: Measure,
+    weave: Option<PathWeave>,
+}
+
+/// A weave on a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct PathWeave {
+    weave: Weave,
+    /// The weave's coordinate at the path's start.
+    start: f64,
 }
 
 impl Path {
@@ -62,7 +74,7 @@ impl Path {
         } else {
             (turn.angle(), Measure::Angle)
         };
-        Self { curve, orientation: Orientation::Geodesic(turn), length, measure }
+        Self { curve, orientation: Orientation::Geodesic(turn), length, measure, weave: None }
     }
 
     /// A circular arc from `start` through `via` to `end`, in position and orientation.
@@ -75,7 +87,7 @@ impl Path {
         let via_at = arc.coordinate(via.translation.vector);
         let turn = Through::new(start.rotation, via.rotation, end.rotation, via_at, length);
         let orientation = Orientation::Through(turn);
-        Ok(Self { curve: Curve::Arc(arc), orientation, length, measure: Measure::Length })
+        Ok(Self { curve: Curve::Arc(arc), orientation, length, measure: Measure::Length, weave: None })
     }
 
     /// Part of the circle through three poses: from `start` to `end`, which both lie on it. The orientation follows the
@@ -95,7 +107,7 @@ impl Path {
         let arc = circle.between(position(start), position(end))?;
         let orientation = Orientation::Geodesic(Geodesic::new(start.rotation, end.rotation));
         let length = arc.radius * arc.angle;
-        Ok(Self { curve: Curve::Arc(arc), orientation, length, measure: Measure::Length })
+        Ok(Self { curve: Curve::Arc(arc), orientation, length, measure: Measure::Length, weave: None })
     }
 
     /// A curve that goes on from `start`'s motion into `end`'s: it has their positions, tangents, curvatures,
@@ -124,7 +136,15 @@ impl Path {
             orientation: self.orientation.part(from, to, self.length),
             length: to - from,
             measure: self.measure,
+            weave: self.weave.map(|on| PathWeave { start: on.start + from, ..on }),
         }
+    }
+
+    /// The same path with a weave about it; `start` is the weave's coordinate where the path begins, in metres. The path coordinate goes on
+    /// counting the way along the seam.
+    #[must_use]
+    pub fn woven(&self, weave: &Weave, start: f64) -> Self {
+        Self { weave: Some(PathWeave { weave: *weave, start }), ..*self }
     }
 
     /// The same way of the tool centre point with the tool turned by a constant rotation in its own frame.
@@ -160,6 +180,21 @@ impl Path {
     /// The pose at coordinate `s`, and its derivatives with respect to s.
     #[must_use]
     pub fn jet(&self, s: f64) -> PoseJet {
+        self.weave_about(&self.seam_jet(s), s)
+    }
+
+    /// The weave of coordinate `s` about a motion along the seam, which need not be the path's own: it may have been corrected.
+    #[must_use]
+    pub fn weave_about(&self, seam: &PoseJet, s: f64) -> PoseJet {
+        match &self.weave {
+            Some(on) => displaced(seam, &on.weave.offset(on.start + s)),
+            None => *seam,
+        }
+    }
+
+    /// The pose at coordinate `s` and its derivatives without the weave.
+    #[must_use]
+    pub fn seam_jet(&self, s: f64) -> PoseJet {
         let (position, linear) = match self.measure {
             Measure::Length => self.curve.jet(s),
             Measure::Angle => self.curve.jet(0.0).at_rest(),

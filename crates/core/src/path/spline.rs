@@ -169,6 +169,7 @@ impl Points<'_> {
             orientation: Orientation::Quintic(turn),
             length,
             measure: Measure::Length,
+            weave: None,
         })
     }
 

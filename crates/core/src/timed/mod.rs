@@ -36,4 +36,5 @@ pub use activity::{Activity, Event};
 pub use error::{Error, Quantity};
 pub use motion::{Command, Planned, TimedMotion};
 pub use profile::TimedProfile;
+pub(crate) use shape::Shape;
 pub use takeover::Takeover;

@@ -2,28 +2,28 @@
 
 /// Displacement σ and its derivatives along u = t/T.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Shape {
+pub(crate) struct Shape {
     n: f64,
     /// Greatest σ′, by equation (4).
-    pub(super) velocity: f64,
+    pub(crate) velocity: f64,
     /// Greatest σ″, by equation (5).
-    pub(super) acceleration: f64,
+    pub(crate) acceleration: f64,
     /// Greatest σ‴, by equation (6).
-    pub(super) jerk: f64,
+    pub(crate) jerk: f64,
 }
 
 /// σ, σ′, σ″, σ‴ at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Point {
-    pub(super) displacement: f64,
-    pub(super) velocity: f64,
-    pub(super) acceleration: f64,
-    pub(super) jerk: f64,
+pub(crate) struct Point {
+    pub(crate) displacement: f64,
+    pub(crate) velocity: f64,
+    pub(crate) acceleration: f64,
+    pub(crate) jerk: f64,
 }
 
 impl Shape {
     /// For 0 < n ≤ 1/2.
-    pub(super) fn new(n: f64) -> Self {
+    pub(crate) fn new(n: f64) -> Self {
         let velocity = 1.0 / (1.0 - n);
         let acceleration = velocity / (n - n * n);
         Self { n, velocity, acceleration, jerk: acceleration / (n * n) }
@@ -34,6 +34,16 @@ impl Shape {
         let n = self.n;
         let n2 = n * n;
         [n2, n - n2, n, 1.0 - n, 1.0 - n + n2, 1.0 - n2, 1.0]
+    }
+
+    /// The whole, 0 ≤ u ≤ 1.
+    pub(crate) fn at(&self, u: f64) -> Point {
+        if u <= 0.5 {
+            return self.first_half(u);
+        }
+        let from_end = self.first_half(1.0 - u);
+        let (displacement, acceleration) = (1.0 - from_end.displacement, -from_end.acceleration);
+        Point { displacement, acceleration, ..from_end }
     }
 
     /// The first half, 0 ≤ u ≤ 1/2. The second is the first one seen from the end: σ(u) = 1 − σ(1 − u).
