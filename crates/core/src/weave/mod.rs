@@ -26,7 +26,7 @@ use pattern::Period;
 /// Periods that each ramp takes.
 const RAMP_PERIODS: f64 = 2.0;
 /// What a ramp may add to velocity, acceleration and jerk of the full amplitude: close to its end the amplitude still grows.
-const RAMP_ADDS: [f64; 3] = [1.0, 1.04, 1.1];
+const RAMP_ADDS: [f64; 3] = [1.01, 1.04, 1.1];
 
 /// How a weave looks. SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
