@@ -11,6 +11,7 @@
 //! | [`kinematics`] | arm models: forward, inverse, Jacobian, joint derivatives along a path, singularities |
 //! | [`otg`] | the trajectory generator: any state to any state in the least time, jerk-limited, N axes |
 //! | [`path`] | lines, arcs, blends and splines with orientation, as functions of the path coordinate; corners |
+//! | [`seam`] | seam tracking: from a sensor's readings to a lane planned ahead of the torch |
 //! | [`timed`] | motion of third order in a given time, and what a new target does to it |
 //! | [`weave`] | periodic motion of the torch about the seam |
 //! | [`vibration`] | prefilters against a flexible mode; corners that keep their error under them |
@@ -37,6 +38,7 @@ pub mod math;
 pub mod otg;
 pub mod path;
 pub mod safety;
+pub mod seam;
 pub mod timed;
 pub mod vibration;
 pub mod weave;

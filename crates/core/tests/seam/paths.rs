@@ -1,0 +1,45 @@
+//! Taught paths in space, with a torch that is tilted on them.
+
+use nalgebra::Unit;
+use seamline::geometry::{Pose, Rotation, Vector3};
+use seamline::path::Path;
+
+const MM: f64 = 1e-3;
+
+/// A torch at `position`, its wire tilted by a work angle (about the travel) and a travel angle (about the lateral axis) from straight
+/// down on a path in direction `tangent` on a plate with the normal `up`.
+fn torch(position: Vector3, tangent: Vector3, up: Vector3, work: f64, travel: f64) -> Pose {
+    let left = up.cross(&tangent);
+    // Tool x along the travel, z down.
+    let upright = Rotation::from_basis_unchecked(&[tangent, -left, -up]);
+    let work = Rotation::from_axis_angle(&Unit::new_normalize(tangent), work);
+    let travel = Rotation::from_axis_angle(&Unit::new_normalize(left), travel);
+    Pose::from_parts(position.into(), work * travel * upright)
+}
+
+/// A frame somewhere in the cell, so that no axis is special.
+fn somewhere() -> Pose {
+    Pose::new(Vector3::new(0.9, -0.3, 0.2), Vector3::new(0.3, -0.5, 0.8))
+}
+
+fn placed(local: Pose) -> Pose {
+    somewhere() * local
+}
+
+/// A straight path.
+pub fn line(length: f64, work: f64, travel: f64) -> Path {
+    let at = |x: f64| placed(torch(Vector3::new(x, 0.0, 0.0), Vector3::x(), Vector3::z(), work, travel));
+    Path::line(&at(0.0), &at(length))
+}
+
+/// An arc to the left; the torch turns with it.
+pub fn arc(radius: f64, length: f64, work: f64, travel: f64) -> Path {
+    let at = |way: f64| {
+        let (sin, cos) = (way / radius).sin_cos();
+        let position = Vector3::new(sin, 1.0 - cos, 0.0) * radius;
+        placed(torch(position, Vector3::new(cos, sin, 0.0), Vector3::z(), work, travel))
+    };
+    Path::arc(&at(0.0), &at(0.5 * length), &at(length)).expect("an arc")
+}
+
+pub const LENGTH: f64 = 300.0 * MM;

@@ -1,0 +1,253 @@
+//! A torch with a laser on a seam in space: written from the definitions, apart from the tracker.
+//!
+//! The seam is a curve S(σ) = P(σ) + y·c_y(σ) + z·c_z(σ) beside the taught path. The laser is a plane on the torch; what it reads is where
+//! the seam crosses that plane, some time ago, with noise. The torch follows its command with a delay.
+
+use std::collections::VecDeque;
+
+use seamline::geometry::{Pose, Vector3};
+use seamline::seam::{
+    Frame, LaneJet, Offset, Reading, SeamTracker, Sensor, Settings, TaughtPath, corrected, foot, speed_factor,
+};
+
+use crate::random::Random;
+
+pub const PERIOD: f64 = 1e-3;
+const MM: f64 = 1e-3;
+
+/// Where the seam runs, and what else a laser sees there.
+pub trait Seam {
+    /// Offset of the seam from the taught path.
+    fn offset(&self, s: f64) -> Offset;
+    /// What stands on the joint: added to what the laser reads, but not to where the weld belongs.
+    fn bump(&self, _s: f64) -> f64 {
+        0.0
+    }
+    /// Whether there is a joint to be seen.
+    fn visible(&self, _s: f64) -> bool {
+        true
+    }
+    /// Gap of the joint, and the laser's quality.
+    fn looks(&self, _s: f64) -> (Option<f64>, f64) {
+        (None, 1.0)
+    }
+}
+
+/// ±5 mm over 200 mm, laterally and in height, each with its own phase.
+#[derive(Clone, Copy)]
+pub struct Sine {
+    pub phase: [f64; 2],
+}
+
+impl Sine {
+    pub fn random(random: &mut Random) -> Self {
+        Self { phase: [random.uniform(0.0, 6.28), random.uniform(0.0, 6.28)] }
+    }
+}
+
+impl Seam for Sine {
+    fn offset(&self, s: f64) -> Offset {
+        let wave = |phase: f64| 5.0 * MM * (std::f64::consts::TAU * s / (200.0 * MM) + phase).sin();
+        Offset::new(wave(self.phase[0]), wave(self.phase[1]))
+    }
+}
+
+/// The laser's faults.
+#[derive(Clone, Copy)]
+pub struct Laser {
+    pub look_ahead: f64,
+    pub rate: f64,
+    pub latency: f64,
+    pub sigma: f64,
+    pub spikes: f64,
+    pub dropouts: f64,
+}
+
+impl Laser {
+    /// SPEC 6.6.
+    pub const USUAL: Self = Self {
+        look_ahead: 30.0 * MM,
+        rate: 100.0,
+        latency: 10e-3,
+        sigma: 0.05 * MM,
+        spikes: 0.01,
+        dropouts: 0.02,
+    };
+}
+
+/// What a run came to. Errors are those of the torch itself, across the path, from `from` on.
+#[derive(Clone, Default)]
+pub struct Figures {
+    pub samples: usize,
+    square: [f64; 2],
+    /// Lateral and in height.
+    pub max: [f64; 2],
+    /// Greatest deviation of the speed along the tracked seam, relative.
+    pub speed: f64,
+    /// Greatest third difference of the commanded positions.
+    pub jerk: f64,
+    /// Greatest error within 15 mm of the places asked for.
+    pub near: f64,
+    /// (s, lateral error) along the way.
+    pub trace: Vec<(f64, f64)>,
+}
+
+impl Figures {
+    pub fn rms(&self) -> [f64; 2] {
+        self.square.map(|sum| (sum / self.samples as f64).sqrt())
+    }
+
+    /// The worse of both directions: RMS and maximum, in millimetres.
+    pub fn worst_mm(&self) -> (f64, f64) {
+        let [a, b] = self.rms();
+        (a.max(b) / MM, self.max[0].max(self.max[1]) / MM)
+    }
+}
+
+pub struct World<'a, P, S> {
+    pub path: &'a P,
+    pub seam: &'a S,
+    pub laser: Laser,
+    pub sensor: Sensor,
+    pub random: Random,
+    /// Cycles by which the torch is behind its command.
+    pub delay: usize,
+    in_flight: VecDeque<(f64, Reading)>,
+    next_exposure: f64,
+}
+
+/// The sensor of a laser that sits on the torch as it is posed at the path's start.
+pub fn sensor(path: &impl TaughtPath, laser: &Laser) -> Sensor {
+    Sensor {
+        tcp_from_sensor: Sensor::mounting(&path.jet(path.span().0), laser.look_ahead).expect("a frame"),
+        range: Offset::new(20.0 * MM, 20.0 * MM),
+        rate: laser.rate,
+        latency: laser.latency,
+        age_max: 0.1,
+        quality_min: 0.3,
+    }
+}
+
+impl<'a, P: TaughtPath, S: Seam> World<'a, P, S> {
+    pub fn new(path: &'a P, seam: &'a S, laser: Laser, seed: u64) -> Self {
+        let sensor = sensor(path, &laser);
+        let mut random = Random(seed);
+        let next_exposure = random.uniform(0.0, 1.0 / laser.rate);
+        Self { path, seam, laser, sensor, random, delay: 8, in_flight: VecDeque::new(), next_exposure }
+    }
+
+    fn seam_point(&self, s: f64, seen: bool) -> Vector3 {
+        let jet = self.path.jet(s);
+        let frame = Frame::of(&jet).expect("a frame");
+        let offset = self.seam.offset(s);
+        let bump = if seen { self.seam.bump(s) } else { 0.0 };
+        jet.pose.translation.vector + frame.left * offset.x + frame.up * (offset.y + bump)
+    }
+
+    /// Where the laser's plane cuts the seam: path coordinate, and the point in the sensor's frame.
+    fn cut(&self, base_from_tcp: &Pose, near: f64) -> Option<(f64, Vector3)> {
+        let sensor_from_base = (base_from_tcp * self.sensor.tcp_from_sensor).inverse();
+        let seen = |s: f64| (sensor_from_base * nalgebra::Point3::from(self.seam_point(s, true))).coords;
+        let (first, last) = self.path.span();
+        let (mut low, mut high) = ((near - 15.0 * MM).max(first), (near + 15.0 * MM).min(last));
+        if low >= high || seen(low).x > 0.0 || seen(high).x < 0.0 {
+            return None;
+        }
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            *(if seen(middle).x < 0.0 { &mut low } else { &mut high }) = middle;
+        }
+        Some((low, seen(low)))
+    }
+
+    /// Exposes where it is time; gives back what arrives by `time`.
+    pub fn readings(&mut self, time: f64, s: f64, base_from_tcp: &Pose) -> Vec<Reading> {
+        if time >= self.next_exposure {
+            let exposure = time;
+            self.next_exposure += 1.0 / self.laser.rate;
+            let dropped = self.random.chance(self.laser.dropouts);
+            let spike = self.random.chance(self.laser.spikes);
+            let noise = [self.random.normal(self.laser.sigma), self.random.normal(self.laser.sigma)];
+            let jump = [5.0 * MM * self.random.sign(), 5.0 * MM * self.random.sign()];
+            let cut = self.cut(base_from_tcp, s + self.laser.look_ahead);
+            if let Some((at, point)) = cut.filter(|(at, _)| !dropped && self.seam.visible(*at)) {
+                let add = |k: usize| noise[k] + if spike { jump[k] } else { 0.0 };
+                let (gap, quality) = self.seam.looks(at);
+                let reading =
+                    Reading { lateral: point.y + add(0), height: point.z + add(1), gap, exposure, quality };
+                self.in_flight.push_back((exposure + self.laser.latency, reading));
+            }
+        }
+        let mut arrived = Vec::new();
+        while self.in_flight.front().is_some_and(|(at, _)| *at <= time + 1e-9) {
+            arrived.extend(self.in_flight.pop_front().map(|(_, reading)| reading));
+        }
+        arrived
+    }
+
+    /// Runs the weld at `speed` from one end to the other; figures count from the coordinate `from` on.
+    pub fn run(&mut self, settings: &Settings, from: f64) -> (Figures, SeamTracker) {
+        let speed = settings.speed;
+        let (first, last) = self.path.span();
+        let mut tracker = SeamTracker::try_new(settings, first, Offset::zeros()).expect("settings");
+        let (mut s, mut time) = (first, 0.0);
+        let mut figures = Figures::default();
+        let mut commanded: VecDeque<Vector3> = VecDeque::new();
+        let mut behind: VecDeque<(f64, Pose)> = VecDeque::new();
+        while s < last {
+            let lane = tracker.lane().at(s).unwrap_or_else(|| panic!("lane unknown at {s}"));
+            let tracked = corrected(&self.path.jet(s), &lane).expect("a frame");
+            behind.push_back((s, tracked.pose));
+            if behind.len() > self.delay + 1 {
+                behind.pop_front();
+            }
+            let (_, measured) = behind[0];
+            tracker.step(time, s, &measured, last);
+            for reading in self.readings(time, s, &measured) {
+                let _ = tracker.take(self.path, &reading);
+            }
+            self.score(&mut figures, &measured, behind[0].0, from);
+            commanded.push_front(tracked.pose.translation.vector);
+            commanded.truncate(4);
+            if s > from {
+                motion_figures(&mut figures, &commanded, speed);
+            }
+            s = self.advance(&tracker, s, speed);
+            time += PERIOD;
+        }
+        (figures, tracker)
+    }
+
+    /// ṡ = v/g, by the midpoint rule.
+    fn advance(&self, tracker: &SeamTracker, s: f64, speed: f64) -> f64 {
+        let rate = |s: f64| {
+            let lane = tracker.lane().at(s).or_else(|| tracker.lane().expected(s)).unwrap_or(LaneJet::TAUGHT);
+            let s = s.min(self.path.span().1);
+            corrected(&self.path.jet(s), &lane).map_or(speed, |jet| speed / speed_factor(&jet).0)
+        };
+        s + PERIOD * rate(s + 0.5 * PERIOD * rate(s))
+    }
+
+    fn score(&self, figures: &mut Figures, measured: &Pose, near: f64, from: f64) {
+        let Some(foot) = foot(self.path, &measured.translation.vector, near) else { return };
+        if foot.s < from {
+            return;
+        }
+        let error = foot.offset - self.seam.offset(foot.s);
+        figures.samples += 1;
+        for axis in 0..2 {
+            figures.square[axis] += error[axis] * error[axis];
+            figures.max[axis] = figures.max[axis].max(error[axis].abs());
+        }
+        figures.trace.push((foot.s, error.x));
+    }
+}
+
+fn motion_figures(figures: &mut Figures, commanded: &VecDeque<Vector3>, speed: f64) {
+    if let [p0, p1, p2, p3] = commanded.iter().copied().collect::<Vec<_>>()[..] {
+        let along = (p0 - p1).norm() / PERIOD;
+        figures.speed = figures.speed.max((along / speed - 1.0).abs());
+        let third = p0 - p1 * 3.0 + p2 * 3.0 - p3;
+        figures.jerk = figures.jerk.max(third.norm() / (PERIOD * PERIOD * PERIOD));
+    }
+}
