@@ -27,8 +27,8 @@ pub(super) enum Estimate {
     Seen(Polynomial),
     /// The seam was seen up to here, and then no more.
     Lost(Trend),
-    /// The seam begins, or comes back, ahead.
-    Ahead(Trend),
+    /// The seam begins, or comes back, ahead; its course there is known well, or not yet.
+    Ahead { trend: Trend, firm: bool },
     /// Nothing is known.
     Nothing,
 }
@@ -77,17 +77,15 @@ pub(super) fn estimate(bins: &Bins, design: &Design, s: f64, due: bool) -> Optio
             }
             if after - before <= LONGEST_BRIDGE && seen_to - after >= FOOTING {
                 bridge(bins, before, after, seen_to).map(Estimate::Seen)
-            } else if seen_to - after >= FOOTING {
-                trend(bins, after, design, seen_to - after).map(Estimate::Ahead)
+            } else if after - before > LONGEST_BRIDGE {
+                ahead(bins, after, design)
             } else {
                 trend(bins, before, design, half).map(Estimate::Lost)
             }
         }
         (Some(before), None) if s - before <= design.spacing => local(bins, s, half).map(Estimate::Seen),
         (Some(before), None) => trend(bins, before, design, half).map(Estimate::Lost),
-        (None, Some(after)) if seen_to - after >= FOOTING => {
-            trend(bins, after, design, seen_to - after).map(Estimate::Ahead)
-        }
+        (None, Some(after)) => ahead(bins, after, design),
         (None, _) => None,
     };
     Some(estimate.unwrap_or(Estimate::Nothing))
@@ -105,9 +103,19 @@ fn bridge(bins: &Bins, before: f64, after: f64, seen_to: f64) -> Option<Polynomi
     fit(bins, Window::Even { from: before - ABUTMENT, to: after + ABUTMENT }, degree)
 }
 
+fn ahead(bins: &Bins, after: f64, design: &Design) -> Option<Estimate> {
+    let length = bins.seen_to() - after;
+    let firm = length >= design.half;
+    trend(bins, after, design, length).map(|trend| Estimate::Ahead { trend, firm })
+}
+
 /// The seam's course at the end of the readings, of which `length` is known there.
 fn trend(bins: &Bins, at: f64, design: &Design, length: f64) -> Option<Trend> {
-    let degree = if length >= design.half { 2 } else { 1 };
+    let degree = match length {
+        _ if length >= design.half => 2,
+        _ if length >= FOOTING => 1,
+        _ => 0,
+    };
     let window = Window::Tricube { centre: at, half: ONE_SIDED * design.half };
     let course = fit(bins, window, degree)?;
     Some(Trend { from: at, offset: course.at(at), slope: course.slope(at) })

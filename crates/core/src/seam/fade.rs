@@ -29,6 +29,13 @@ impl Fade {
         Self { left: length.max(SHORTEST) }
     }
 
+    /// Length in metres that a fade of these rests takes at least.
+    pub(super) fn needed(rests: &[Offset; 3], spacing: f64, third: f64, step: f64) -> f64 {
+        let mut fade = Self::over(SHORTEST);
+        fade.lengthen(rests, spacing, third, step);
+        fade.left
+    }
+
     /// The rest at the next control point, from those at the last three (newest first); `None` where the fade ends there. Where third
     /// differences would pass `third` or first differences `step`, it becomes longer.
     pub(super) fn next(
@@ -38,13 +45,7 @@ impl Fade {
         third: f64,
         step: f64,
     ) -> Option<Offset> {
-        for _ in 0..LENGTHENINGS {
-            let (slope, jerk) = peaks(rests, spacing, self.left);
-            if slope * spacing <= step && jerk * spacing * spacing * spacing <= third {
-                break;
-            }
-            self.left *= 1.2;
-        }
+        self.lengthen(rests, spacing, third, step);
         let w = self.left;
         self.left -= spacing;
         if self.left <= 0.0 {
@@ -52,6 +53,16 @@ impl Fade {
         }
         let [p0, p1, p2] = parabola(rests, spacing, w);
         Some((p0 * 3.0 - p1 * 3.0 + p2) * cube(1.0 - spacing / w))
+    }
+
+    fn lengthen(&mut self, rests: &[Offset; 3], spacing: f64, third: f64, step: f64) {
+        for _ in 0..LENGTHENINGS {
+            let (slope, jerk) = peaks(rests, spacing, self.left);
+            if slope * spacing <= step && jerk * spacing * spacing * spacing <= third {
+                break;
+            }
+            self.left *= 1.2;
+        }
     }
 }
 

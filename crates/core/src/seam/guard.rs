@@ -84,10 +84,6 @@ impl Guard {
         Self { bounds, points: [offset; 3], rest: [WayToRest::default(); 2] }
     }
 
-    pub(super) fn bounds(&self) -> &Bounds {
-        &self.bounds
-    }
-
     /// The last points, newest first.
     pub(super) fn points(&self) -> &[Offset; 3] {
         &self.points

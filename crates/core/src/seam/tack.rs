@@ -54,37 +54,36 @@ pub(super) enum Verdict {
 pub(super) struct TackWatch {
     mask: TackMask,
     trend: Trend,
-    /// Where the present tack began.
-    began: Option<f64>,
+    /// Where the present tack began, and its greatest rise so far.
+    present: Option<(f64, f64)>,
     /// To where the last one's flank goes.
     flank_to: f64,
 }
 
 impl TackWatch {
     pub(super) fn new(mask: TackMask) -> Self {
-        Self { mask, trend: Trend::default(), began: None, flank_to: f64::NEG_INFINITY }
+        Self { mask, trend: Trend::default(), present: None, flank_to: f64::NEG_INFINITY }
     }
 
     pub(super) fn judge(&mut self, sighting: &Sighting) -> Verdict {
         let (s, height) = (sighting.s, sighting.offset.y);
         let rise = self.trend.at(s).map_or(0.0, |level| height - level);
-        // Once on a tack, half the rise still is one.
-        let threshold = if self.began.is_some() { 0.5 * self.mask.rise } else { self.mask.rise };
-        let shown = sighting.tack || rise > threshold;
-        match self.began {
-            None if shown => {
-                self.began = Some(s);
+        match self.present {
+            None if sighting.tack || rise > self.mask.rise => {
+                self.present = Some((s, rise));
                 return Verdict::Tack { flank_from: Some(s - self.mask.margin) };
             }
-            Some(began) if shown => {
+            // Its end is half its height down: the trend from before it may be off by then.
+            Some((began, top)) if sighting.tack || (rise > 0.5 * top && top > self.mask.rise) => {
                 if s - began <= self.mask.longest {
+                    self.present = Some((began, top.max(rise)));
                     return Verdict::Tack { flank_from: None };
                 }
                 *self = Self::new(self.mask);
             }
             Some(_) => {
-                self.began = None;
-                self.flank_to = s + self.mask.margin;
+                let flank_to = s + self.mask.margin;
+                *self = Self { flank_to, ..Self::new(self.mask) };
             }
             None => {}
         }

@@ -1,11 +1,13 @@
 //! Seam tracking, one cycle at a time.
 
+use core::mem::discriminant;
+
 use super::Offset;
 use super::bins::Bins;
 use super::estimate::{Estimate, Trend, estimate};
 use super::fade::Fade;
 use super::gate::{Gate, Sighting};
-use super::guard::Guard;
+use super::guard::{Bounds, Guard};
 use super::lane::Lane;
 use super::mean::MovingMean;
 use super::measurement::{Counts, Reading, Rejection};
@@ -23,7 +25,7 @@ const MEETING: f64 = 8e-3;
 /// A jump of what is wanted up to this is left to the lane's smoothness, in metres.
 const SMALL: f64 = 0.1e-3;
 /// Shares of the jerk: what a fade takes, and from where on what is wanted is faded to.
-const FADE_SHARE: f64 = 0.7;
+const FADE_SHARE: f64 = 0.9;
 const ROUGH_SHARE: f64 = 0.9;
 
 /// A control point of the lane that has just frozen.
@@ -207,14 +209,14 @@ impl SeamTracker {
         if !good {
             return self.counts.count(Rejection::Spike);
         }
-        if let Some(tacks) = &mut self.tacks {
-            if let Verdict::Tack { flank_from } = tacks.judge(&sighting) {
-                self.counts.count(Rejection::Tack);
-                if let (Some(from), Gathered::Regression(bins)) = (flank_from, &mut self.gathered) {
-                    bins.clear(from, sighting.s);
-                }
-                return;
+        if let Some(tacks) = &mut self.tacks
+            && let Verdict::Tack { flank_from } = tacks.judge(&sighting)
+        {
+            self.counts.count(Rejection::Tack);
+            if let (Some(from), Gathered::Regression(bins)) = (flank_from, &mut self.gathered) {
+                bins.clear(from, sighting.s);
             }
+            return;
         }
         match &mut self.gathered {
             Gathered::Regression(bins) => bins.add(sighting.s, sighting.offset),
@@ -235,42 +237,45 @@ impl SeamTracker {
     /// Freezes the next control point, if it can be known or must be.
     fn freeze(&mut self, s: f64) -> Option<ControlPoint> {
         let number = self.lane.next();
-        let spacing = self.design.spacing;
-        let knot = number as f64 * spacing;
+        let knot = number as f64 * self.design.spacing;
         let due = s >= knot - self.design.lead;
         let (curve, course) = self.wanted(knot, due)?;
-        let wanted = |back: i64| curve.at((number - back) as f64 * spacing, spacing);
-        let points = self.guard.points();
-        let rests = [points[0] - wanted(1), points[1] - wanted(2), points[2] - wanted(3)];
-        let bounds = *self.guard.bounds();
-        let asked = wanted(0);
-        let jumps = core::mem::discriminant(&course) != core::mem::discriminant(&self.course)
-            && rests[0].norm() > SMALL;
-        let rough = self.guard.third(&asked).norm() > ROUGH_SHARE * bounds.third
-            || (asked - points[0]).amax() > bounds.step;
-        let meet = match course {
-            Course::Ahead { meet } => meet - (knot - spacing),
-            _ => 0.0,
-        };
-        if self.fade.is_none() && (jumps || rough) {
-            self.fade = Some(Fade::over(meet));
-        }
-        let rest = self
-            .fade
-            .as_mut()
-            .and_then(|fade| fade.next(&rests, spacing, FADE_SHARE * bounds.third, bounds.step));
-        if rest.is_none() {
-            self.fade = None;
-        }
-        let bound = bounds.offset;
-        let asked = (asked + rest.unwrap_or_default()).map(|component| component.clamp(-bound, bound));
-        let (offset, as_asked) = self.guard.next(asked);
+        let asked = self.approach(knot, &curve, course);
+        let bound = self.design.bounds.offset;
+        let (offset, as_asked) = self.guard.next(asked.map(|component| component.clamp(-bound, bound)));
         if !as_asked && self.fade.is_none() {
-            self.fade = Some(Fade::over(meet));
+            self.fade = Some(Fade::over(0.0));
         }
         self.course = course;
         self.lane.push(offset);
         Some(ControlPoint { number, offset })
+    }
+
+    /// The next control point on the way from where the lane is to the curve it is to follow.
+    fn approach(&mut self, knot: f64, curve: &Curve, course: Course) -> Offset {
+        let Bounds { third, step, .. } = self.design.bounds;
+        let spacing = self.design.spacing;
+        let wanted = curve.at(knot, spacing);
+        let rests = self.rests(knot, curve);
+        let jumps = discriminant(&course) != discriminant(&self.course) && rests[0].norm() > SMALL;
+        let rough = self.guard.third(&wanted).norm() > ROUGH_SHARE * third
+            || (wanted - self.guard.points()[0]).amax() > step;
+        if self.fade.is_none() && (jumps || rough) {
+            let length = if let Course::Ahead { meet } = course { meet - (knot - spacing) } else { 0.0 };
+            self.fade = Some(Fade::over(length));
+        }
+        let rest = self.fade.as_mut().and_then(|fade| fade.next(&rests, spacing, FADE_SHARE * third, step));
+        if rest.is_none() {
+            self.fade = None;
+        }
+        wanted + rest.unwrap_or_default()
+    }
+
+    /// How far the last three control points lie from a curve.
+    fn rests(&self, knot: f64, curve: &Curve) -> [Offset; 3] {
+        let spacing = self.design.spacing;
+        let points = self.guard.points();
+        core::array::from_fn(|back| points[back] - curve.at(knot - (back + 1) as f64 * spacing, spacing))
     }
 
     /// What the lane is to follow around a knot; `None` where it is worth waiting.
@@ -289,22 +294,37 @@ impl SeamTracker {
         };
         Some(match estimate(bins, &self.design, knot, due)? {
             Estimate::Seen(polynomial) => (Curve::Polynomial(polynomial), Course::Seen),
-            Estimate::Ahead(trend) => {
-                let meet = match self.course {
-                    Course::Ahead { meet } => meet,
-                    _ => trend.from + MEETING,
-                };
-                (Curve::Trend(trend), Course::Ahead { meet })
-            }
+            Estimate::Ahead { trend, firm } => self.ahead(trend, firm, knot),
             Estimate::Lost(trend) => match self.course {
+                // One and the same trend until there are new readings.
                 Course::Lost(before) if before.from == trend.from => self.lost_on(before, knot),
                 _ => self.lost_on(trend, knot),
             },
-            Estimate::Nothing => match self.course {
-                Course::Lost(before) => self.lost_on(before, knot),
-                _ => self.still(),
-            },
+            Estimate::Nothing => self.as_before(knot),
         })
+    }
+
+    /// Towards readings ahead: at once where their course is known well or the way is needed, later where it may become clearer.
+    fn ahead(&self, trend: Trend, firm: bool, knot: f64) -> (Curve, Course) {
+        let curve = Curve::Trend(trend);
+        if let Course::Ahead { .. } = self.course {
+            return (curve, self.course);
+        }
+        let Bounds { third, step, .. } = self.design.bounds;
+        let spacing = self.design.spacing;
+        let meet = trend.from + MEETING;
+        let needed = || Fade::needed(&self.rests(knot, &curve), spacing, FADE_SHARE * third, step);
+        if firm || needed() + spacing > meet - knot {
+            return (curve, Course::Ahead { meet });
+        }
+        self.as_before(knot)
+    }
+
+    fn as_before(&self, knot: f64) -> (Curve, Course) {
+        match self.course {
+            Course::Lost(before) => self.lost_on(before, knot),
+            _ => self.still(),
+        }
     }
 
     fn lost_on(&self, trend: Trend, knot: f64) -> (Curve, Course) {

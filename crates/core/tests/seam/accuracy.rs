@@ -36,6 +36,10 @@ fn the_torch_stays_on_a_wandering_seam() {
                     worst.2.max(figures.speed),
                     worst.3.max(figures.jerk),
                 );
+                if max > max_max {
+                    let w = figures.trace.iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+                    println!("seed {seed}: {:.3} at {:.1}, phase {:?}", w.1 / MM, w.0 / MM, seam.phase);
+                }
                 if seed == 0 {
                     println!("{:?}", tracker.counts());
                 }

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a failing test says where")]
 
 mod accuracy;
+mod events;
 mod paths;
 #[path = "../otg_support/random.rs"]
 #[allow(dead_code, unreachable_pub, reason = "shared with the generator's tests, which use all of it")]

@@ -27,13 +27,13 @@ fn placed(local: Pose) -> Pose {
 }
 
 /// A straight path.
-pub fn line(length: f64, work: f64, travel: f64) -> Path {
+pub(crate) fn line(length: f64, work: f64, travel: f64) -> Path {
     let at = |x: f64| placed(torch(Vector3::new(x, 0.0, 0.0), Vector3::x(), Vector3::z(), work, travel));
     Path::line(&at(0.0), &at(length))
 }
 
 /// An arc to the left; the torch turns with it.
-pub fn arc(radius: f64, length: f64, work: f64, travel: f64) -> Path {
+pub(crate) fn arc(radius: f64, length: f64, work: f64, travel: f64) -> Path {
     let at = |way: f64| {
         let (sin, cos) = (way / radius).sin_cos();
         let position = Vector3::new(sin, 1.0 - cos, 0.0) * radius;
@@ -42,4 +42,4 @@ pub fn arc(radius: f64, length: f64, work: f64, travel: f64) -> Path {
     Path::arc(&at(0.0), &at(0.5 * length), &at(length)).expect("an arc")
 }
 
-pub const LENGTH: f64 = 300.0 * MM;
+pub(crate) const LENGTH: f64 = 300.0 * MM;

@@ -12,11 +12,11 @@ use seamline::seam::{
 
 use crate::random::Random;
 
-pub const PERIOD: f64 = 1e-3;
+pub(crate) const PERIOD: f64 = 1e-3;
 const MM: f64 = 1e-3;
 
 /// Where the seam runs, and what else a laser sees there.
-pub trait Seam {
+pub(crate) trait Seam {
     /// Offset of the seam from the taught path.
     fn offset(&self, s: f64) -> Offset;
     /// What stands on the joint: added to what the laser reads, but not to where the weld belongs.
@@ -35,12 +35,12 @@ pub trait Seam {
 
 /// ±5 mm over 200 mm, laterally and in height, each with its own phase.
 #[derive(Clone, Copy)]
-pub struct Sine {
-    pub phase: [f64; 2],
+pub(crate) struct Sine {
+    pub(crate) phase: [f64; 2],
 }
 
 impl Sine {
-    pub fn random(random: &mut Random) -> Self {
+    pub(crate) fn random(random: &mut Random) -> Self {
         Self { phase: [random.uniform(0.0, 6.28), random.uniform(0.0, 6.28)] }
     }
 }
@@ -54,18 +54,18 @@ impl Seam for Sine {
 
 /// The laser's faults.
 #[derive(Clone, Copy)]
-pub struct Laser {
-    pub look_ahead: f64,
-    pub rate: f64,
-    pub latency: f64,
-    pub sigma: f64,
-    pub spikes: f64,
-    pub dropouts: f64,
+pub(crate) struct Laser {
+    pub(crate) look_ahead: f64,
+    pub(crate) rate: f64,
+    pub(crate) latency: f64,
+    pub(crate) sigma: f64,
+    pub(crate) spikes: f64,
+    pub(crate) dropouts: f64,
 }
 
 impl Laser {
     /// SPEC 6.6.
-    pub const USUAL: Self = Self {
+    pub(crate) const USUAL: Self = Self {
         look_ahead: 30.0 * MM,
         rate: 100.0,
         latency: 10e-3,
@@ -77,47 +77,45 @@ impl Laser {
 
 /// What a run came to. Errors are those of the torch itself, across the path, from `from` on.
 #[derive(Clone, Default)]
-pub struct Figures {
-    pub samples: usize,
+pub(crate) struct Figures {
+    pub(crate) samples: usize,
     square: [f64; 2],
     /// Lateral and in height.
-    pub max: [f64; 2],
+    pub(crate) max: [f64; 2],
     /// Greatest deviation of the speed along the tracked seam, relative.
-    pub speed: f64,
+    pub(crate) speed: f64,
     /// Greatest third difference of the commanded positions.
-    pub jerk: f64,
-    /// Greatest error within 15 mm of the places asked for.
-    pub near: f64,
+    pub(crate) jerk: f64,
     /// (s, lateral error) along the way.
-    pub trace: Vec<(f64, f64)>,
+    pub(crate) trace: Vec<(f64, f64)>,
 }
 
 impl Figures {
-    pub fn rms(&self) -> [f64; 2] {
+    pub(crate) fn rms(&self) -> [f64; 2] {
         self.square.map(|sum| (sum / self.samples as f64).sqrt())
     }
 
     /// The worse of both directions: RMS and maximum, in millimetres.
-    pub fn worst_mm(&self) -> (f64, f64) {
+    pub(crate) fn worst_mm(&self) -> (f64, f64) {
         let [a, b] = self.rms();
         (a.max(b) / MM, self.max[0].max(self.max[1]) / MM)
     }
 }
 
-pub struct World<'a, P, S> {
-    pub path: &'a P,
-    pub seam: &'a S,
-    pub laser: Laser,
-    pub sensor: Sensor,
-    pub random: Random,
+pub(crate) struct World<'a, P, S> {
+    pub(crate) path: &'a P,
+    pub(crate) seam: &'a S,
+    pub(crate) laser: Laser,
+    pub(crate) sensor: Sensor,
+    pub(crate) random: Random,
     /// Cycles by which the torch is behind its command.
-    pub delay: usize,
+    pub(crate) delay: usize,
     in_flight: VecDeque<(f64, Reading)>,
     next_exposure: f64,
 }
 
 /// The sensor of a laser that sits on the torch as it is posed at the path's start.
-pub fn sensor(path: &impl TaughtPath, laser: &Laser) -> Sensor {
+pub(crate) fn sensor(path: &impl TaughtPath, laser: &Laser) -> Sensor {
     Sensor {
         tcp_from_sensor: Sensor::mounting(&path.jet(path.span().0), laser.look_ahead).expect("a frame"),
         range: Offset::new(20.0 * MM, 20.0 * MM),
@@ -129,7 +127,7 @@ pub fn sensor(path: &impl TaughtPath, laser: &Laser) -> Sensor {
 }
 
 impl<'a, P: TaughtPath, S: Seam> World<'a, P, S> {
-    pub fn new(path: &'a P, seam: &'a S, laser: Laser, seed: u64) -> Self {
+    pub(crate) fn new(path: &'a P, seam: &'a S, laser: Laser, seed: u64) -> Self {
         let sensor = sensor(path, &laser);
         let mut random = Random(seed);
         let next_exposure = random.uniform(0.0, 1.0 / laser.rate);
@@ -161,7 +159,7 @@ impl<'a, P: TaughtPath, S: Seam> World<'a, P, S> {
     }
 
     /// Exposes where it is time; gives back what arrives by `time`.
-    pub fn readings(&mut self, time: f64, s: f64, base_from_tcp: &Pose) -> Vec<Reading> {
+    pub(crate) fn readings(&mut self, time: f64, s: f64, base_from_tcp: &Pose) -> Vec<Reading> {
         if time >= self.next_exposure {
             let exposure = time;
             self.next_exposure += 1.0 / self.laser.rate;
@@ -186,7 +184,7 @@ impl<'a, P: TaughtPath, S: Seam> World<'a, P, S> {
     }
 
     /// Runs the weld at `speed` from one end to the other; figures count from the coordinate `from` on.
-    pub fn run(&mut self, settings: &Settings, from: f64) -> (Figures, SeamTracker) {
+    pub(crate) fn run(&mut self, settings: &Settings, from: f64) -> (Figures, SeamTracker) {
         let speed = settings.speed;
         let (first, last) = self.path.span();
         let mut tracker = SeamTracker::try_new(settings, first, Offset::zeros()).expect("settings");
@@ -209,9 +207,7 @@ impl<'a, P: TaughtPath, S: Seam> World<'a, P, S> {
             self.score(&mut figures, &measured, behind[0].0, from);
             commanded.push_front(tracked.pose.translation.vector);
             commanded.truncate(4);
-            if s > from {
-                motion_figures(&mut figures, &commanded, speed);
-            }
+            motion_figures(&mut figures, &commanded, speed);
             s = self.advance(&tracker, s, speed);
             time += PERIOD;
         }
@@ -239,7 +235,7 @@ impl<'a, P: TaughtPath, S: Seam> World<'a, P, S> {
             figures.square[axis] += error[axis] * error[axis];
             figures.max[axis] = figures.max[axis].max(error[axis].abs());
         }
-        figures.trace.push((foot.s, error.x));
+        figures.trace.push((foot.s, error.norm()));
     }
 }
 
