@@ -41,7 +41,9 @@ pub(crate) struct Sine {
 
 impl Sine {
     pub(crate) fn random(random: &mut Random) -> Self {
-        Self { phase: [random.uniform(0.0, 6.28), random.uniform(0.0, 6.28)] }
+        Self {
+            phase: [random.uniform(0.0, std::f64::consts::TAU), random.uniform(0.0, std::f64::consts::TAU)],
+        }
     }
 }
 
