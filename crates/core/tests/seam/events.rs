@@ -71,7 +71,7 @@ fn worst(event: Event, tacks: Option<TackMask>) -> f64 {
             let settings = Settings::new(sensor(&path, &Laser::USUAL), SPEED);
             let settings = Settings { curvature: 10.0, bound: 15.0 * MM, tacks, ..settings };
             let (figures, tracker) = world.run(&settings, 45.0 * MM);
-            of_path = of_path.max(figures.worst_mm().1);
+            of_path = of_path.max(figures.max_mm());
             assert!(figures.jerk < 20.0, "{event:?} {name} {seed}: jerk {}", figures.jerk);
             assert!(figures.speed < 0.005, "{event:?} {name} {seed}: speed {}", figures.speed);
             assert_eq!(tracker.lost(), None);

@@ -77,30 +77,62 @@ impl Laser {
     };
 }
 
-/// What a run came to. Errors are those of the torch itself, across the path, from `from` on.
+/// What a run came to, or the worst of several. Errors are those of the torch itself, across the path.
 #[derive(Clone, Default)]
 pub(crate) struct Figures {
-    pub(crate) samples: usize,
-    square: [f64; 2],
-    /// Lateral and in height.
-    pub(crate) max: [f64; 2],
+    /// Of this run so far: samples, and the sums of the squares laterally and in height.
+    samples: f64,
+    squares: [f64; 2],
+    /// The worse direction's RMS.
+    rms: f64,
+    /// The worse direction's maximum.
+    max: f64,
     /// Greatest deviation of the speed along the tracked seam, relative.
     pub(crate) speed: f64,
-    /// Greatest third difference of the commanded positions.
+    /// Greatest third difference of the commanded positions over the cube of the period.
     pub(crate) jerk: f64,
-    /// (s, lateral error) along the way.
-    pub(crate) trace: Vec<(f64, f64)>,
 }
 
 impl Figures {
-    pub(crate) fn rms(&self) -> [f64; 2] {
-        self.square.map(|sum| (sum / self.samples as f64).sqrt())
+    pub(crate) fn rms_mm(&self) -> f64 {
+        self.rms / MM
     }
 
-    /// The worse of both directions: RMS and maximum, in millimetres.
-    pub(crate) fn worst_mm(&self) -> (f64, f64) {
-        let [a, b] = self.rms();
-        (a.max(b) / MM, self.max[0].max(self.max[1]) / MM)
+    pub(crate) fn max_mm(&self) -> f64 {
+        self.max / MM
+    }
+
+    fn add(&mut self, error: Offset) {
+        self.samples += 1.0;
+        for axis in 0..2 {
+            self.squares[axis] += error[axis] * error[axis];
+        }
+        self.rms = (self.squares[0].max(self.squares[1]) / self.samples).sqrt();
+        self.max = self.max.max(error.amax());
+    }
+
+    pub(crate) fn keep_worst(&mut self, other: &Self) {
+        for (mine, its) in [
+            (&mut self.rms, other.rms),
+            (&mut self.max, other.max),
+            (&mut self.speed, other.speed),
+            (&mut self.jerk, other.jerk),
+        ] {
+            *mine = mine.max(its);
+        }
+    }
+}
+
+impl std::fmt::Display for Figures {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "RMS {:.4} mm, max {:.3} mm, speed off {:.5} %, jerk {:.0} mm/s3",
+            self.rms_mm(),
+            self.max_mm(),
+            100.0 * self.speed,
+            self.jerk / MM
+        )
     }
 }
 
@@ -185,33 +217,24 @@ impl<'a, P: TaughtPath, S: Seam> World<'a, P, S> {
         arrived
     }
 
-    /// Runs the weld at `speed` from one end to the other; figures count from the coordinate `from` on.
+    /// Runs the weld at the settings' speed from one end to the other; errors count from the coordinate `from` on.
     pub(crate) fn run(&mut self, settings: &Settings, from: f64) -> (Figures, SeamTracker) {
-        let speed = settings.speed;
         let (first, last) = self.path.span();
         let mut tracker = SeamTracker::try_new(settings, first, Offset::zeros()).expect("settings");
-        let (mut s, mut time) = (first, 0.0);
+        let mut torch = Torch::new(first, self.delay);
         let mut figures = Figures::default();
-        let mut commanded: VecDeque<Vector3> = VecDeque::new();
-        let mut behind: VecDeque<(f64, Pose)> = VecDeque::new();
-        while s < last {
-            let lane = tracker.lane().at(s).unwrap_or_else(|| panic!("lane unknown at {s}"));
-            let tracked = corrected(&self.path.jet(s), &lane).expect("a frame");
-            behind.push_back((s, tracked.pose));
-            if behind.len() > self.delay + 1 {
-                behind.pop_front();
-            }
-            let (_, measured) = behind[0];
-            tracker.step(time, s, &measured, last);
-            for reading in self.readings(time, s, &measured) {
+        while torch.s < last {
+            let lane = tracker.lane().at(torch.s).unwrap_or_else(|| panic!("lane unknown at {}", torch.s));
+            let command = corrected(&self.path.jet(torch.s), &lane).expect("a frame").pose;
+            let (near, measured) = torch.follow(&command);
+            tracker.step(torch.time, torch.s, &measured, last);
+            for reading in self.readings(torch.time, torch.s, &measured) {
                 let _ = tracker.take(self.path, &reading);
             }
-            self.score(&mut figures, &measured, behind[0].0, from);
-            commanded.push_front(tracked.pose.translation.vector);
-            commanded.truncate(4);
-            motion_figures(&mut figures, &commanded, speed);
-            s = self.advance(&tracker, s, speed);
-            time += PERIOD;
+            self.score(&mut figures, &measured, near, from);
+            torch.motion_figures(&mut figures, settings.speed);
+            torch.s = self.advance(&tracker, torch.s, settings.speed);
+            torch.time += PERIOD;
         }
         (figures, tracker)
     }
@@ -226,26 +249,45 @@ impl<'a, P: TaughtPath, S: Seam> World<'a, P, S> {
         s + PERIOD * rate(s + 0.5 * PERIOD * rate(s))
     }
 
-    fn score(&self, figures: &mut Figures, measured: &Pose, near: f64, from: f64) {
+    pub(crate) fn score(&self, figures: &mut Figures, measured: &Pose, near: f64, from: f64) {
         let Some(foot) = foot(self.path, &measured.translation.vector, near) else { return };
         if foot.s < from {
             return;
         }
-        let error = foot.offset - self.seam.offset(foot.s);
-        figures.samples += 1;
-        for axis in 0..2 {
-            figures.square[axis] += error[axis] * error[axis];
-            figures.max[axis] = figures.max[axis].max(error[axis].abs());
-        }
-        figures.trace.push((foot.s, error.norm()));
+        figures.add(foot.offset - self.seam.offset(foot.s));
     }
 }
 
-fn motion_figures(figures: &mut Figures, commanded: &VecDeque<Vector3>, speed: f64) {
-    if let [p0, p1, p2, p3] = commanded.iter().copied().collect::<Vec<_>>()[..] {
-        let along = (p0 - p1).norm() / PERIOD;
-        figures.speed = figures.speed.max((along / speed - 1.0).abs());
-        let third = p0 - p1 * 3.0 + p2 * 3.0 - p3;
-        figures.jerk = figures.jerk.max(third.norm() / (PERIOD * PERIOD * PERIOD));
+/// Where the torch is on its way, and where it was told to be.
+pub(crate) struct Torch {
+    pub(crate) s: f64,
+    pub(crate) time: f64,
+    delay: usize,
+    /// Newest first: coordinate and pose.
+    commanded: VecDeque<(f64, Pose)>,
+}
+
+impl Torch {
+    pub(crate) fn new(s: f64, delay: usize) -> Self {
+        Self { s, time: 0.0, delay, commanded: VecDeque::new() }
+    }
+
+    /// Takes the command; gives where the torch really is by now: coordinate and pose.
+    pub(crate) fn follow(&mut self, command: &Pose) -> (f64, Pose) {
+        self.commanded.push_front((self.s, *command));
+        self.commanded.truncate(4.max(self.delay + 1));
+        self.commanded[self.delay.min(self.commanded.len() - 1)]
+    }
+
+    /// Speed and jerk of the command by its differences.
+    pub(crate) fn motion_figures(&self, figures: &mut Figures, speed: f64) {
+        let positions: Vec<_> =
+            self.commanded.iter().take(4).map(|(_, pose)| pose.translation.vector).collect();
+        if let [p0, p1, p2, p3] = positions[..] {
+            let along = (p0 - p1).norm() / PERIOD;
+            figures.speed = figures.speed.max((along / speed - 1.0).abs());
+            let third = p0 - p1 * 3.0 + p2 * 3.0 - p3;
+            figures.jerk = figures.jerk.max(third.norm() / (PERIOD * PERIOD * PERIOD));
+        }
     }
 }
