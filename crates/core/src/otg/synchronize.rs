@@ -28,6 +28,8 @@ const SAME: f64 = 1e-15;
 /// An axis that cannot arrive at the common time, but could earlier by this fraction of it, does so: on the last stretch of a motion that is
 /// planned anew on every cycle, all axes have this one time but for rounding, and any other one is far later.
 const ALMOST: f64 = 1e-9;
+/// Least durations this near, relative to the common time, are one but for what rounding adds up to beside a moving target.
+const ONE_TIME: f64 = 1e-6;
 
 impl Demand {
     /// The first duration from `t` on that meets the demand.
@@ -97,7 +99,8 @@ pub(super) fn common_duration<const N: usize>(
         else {
             return Ok(t);
         };
-        if late != last && !hurried[last] && plans[last].earliest == t {
+        let one_time = t - plans[late].earliest <= ONE_TIME * t;
+        if one_time && late != last && !hurried[last] && plans[last].earliest == t {
             hurried[last] = true;
             if let Some(plan) = hurry(&axes[last], &axes[late], plans[late].earliest, t) {
                 for axis in (0..N).filter(together) {
