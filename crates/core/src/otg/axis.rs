@@ -356,18 +356,6 @@ impl Axis {
                 true
             }
         };
-        #[cfg(feature = "std")]
-        if !joined {
-            extern crate std;
-            std::eprintln!(
-                "write {solution:?} brake {} turn {:?} motion {:?} target {:?} phases {:?}",
-                self.brake,
-                self.turn,
-                self.motion,
-                profile.target(),
-                profile.phases()
-            );
-        }
         if joined { Ok(()) } else { Err(Error::OutOfRange { axis }) }
     }
 
