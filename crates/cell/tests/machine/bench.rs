@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use seamline::control::{
-    Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, NoClock, ServoModel,
+    Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, NoClock, PrefilterEntry,
+    ServoModel,
 };
 use seamline::drive::Drive;
 use seamline::kinematics::SixAxisArm;
@@ -16,6 +17,7 @@ use seamline_cell::job::{
     SpeedOrigin, Step, Target, Zone, pulses_from_joints,
 };
 use seamline_cell::plan::{Arm, Planner};
+use seamline_cell::run::joint_prefilter;
 use seamline_cell::sim::SimulatedDrive;
 
 pub(crate) type Ar2010 = Arm<6, SixAxisArm>;
@@ -101,7 +103,7 @@ pub(crate) fn config(cell: &Cell, arm: &Ar2010) -> CycleConfig<6> {
 
 /// A controller with its simulated drives.
 pub(crate) struct Bench {
-    pub(crate) cycle: Cycle<6, SixAxisArm>,
+    pub(crate) cycle: Cycle<6, SixAxisArm, Box<[PrefilterEntry<6>]>>,
     pub(crate) drive: SimulatedDrive<6>,
     pub(crate) queue: Queue,
     pub(crate) input: CycleInput<6>,
@@ -120,7 +122,12 @@ impl Bench {
         commands: Vec<Command<6>>,
     ) -> Self {
         let mut bench = Self {
-            cycle: Cycle::new(config(cell, arm), arm.kinematics, arm.home),
+            cycle: Cycle::with_prefilter(
+                config(cell, arm),
+                arm.kinematics,
+                joint_prefilter(cell).unwrap(),
+                arm.home,
+            ),
             drive,
             queue: Queue(commands.into()),
             input: CycleInput {

@@ -14,19 +14,19 @@ use seamline_cell::plan::{Arm, Planned, Planner};
 use crate::bench::{Ar2010, Bench, Random, independent_forward, independent_torch, move_to, worst_shares};
 
 /// Joints in which the tool is at home in front of the robot.
-const HOME: [f64; 6] = [0.0, 0.2, -0.2, 0.1, -1.2, 0.3];
+pub(crate) const HOME: [f64; 6] = [0.0, 0.2, -0.2, 0.1, -1.2, 0.3];
 
-struct Way {
-    cell: Cell,
-    arm: Ar2010,
+pub(crate) struct Way {
+    pub(crate) cell: Cell,
+    pub(crate) arm: Ar2010,
     /// The taught poses, the start first.
-    poses: Vec<Isometry3<f64>>,
+    pub(crate) poses: Vec<Isometry3<f64>>,
     joints: Vec<[f64; 6]>,
 }
 
 impl Way {
     /// Points by their distance from the start, in mm in a plane that lies askew, and a turn of the tool in degrees about its z axis.
-    fn new(points: &[([f64; 2], f64)]) -> Self {
+    pub(crate) fn new(points: &[([f64; 2], f64)]) -> Self {
         let cell = Cell::default_cell().unwrap();
         let arm: Ar2010 = Arm::from_cell(&cell).unwrap();
         let torch = independent_torch();
@@ -56,11 +56,11 @@ impl Way {
         step
     }
 
-    fn lines(&self, mm_s: f64, zone: Zone) -> Vec<Step> {
+    pub(crate) fn lines(&self, mm_s: f64, zone: Zone) -> Vec<Step> {
         (1..self.poses.len()).map(|point| self.step(point, MovePath::Linear, mm_s, zone)).collect()
     }
 
-    fn plan(&self, steps: &[Step]) -> Vec<Planned<6>> {
+    pub(crate) fn plan(&self, steps: &[Step]) -> Vec<Planned<6>> {
         let mut planner = Planner::new(&self.arm, &self.cell, HOME).unwrap();
         let mut parts = Vec::new();
         for step in steps {
@@ -70,7 +70,7 @@ impl Way {
         parts
     }
 
-    fn run(&self, parts: &[Planned<6>]) -> Trace {
+    pub(crate) fn run(&self, parts: &[Planned<6>]) -> Trace {
         let mut arm = self.arm.clone();
         arm.home = HOME;
         let mut cell = self.cell.clone();
@@ -102,15 +102,15 @@ impl Way {
     }
 }
 
-struct Trace {
-    joints: Vec<[f64; 6]>,
-    tools: Vec<Isometry3<f64>>,
+pub(crate) struct Trace {
+    pub(crate) joints: Vec<[f64; 6]>,
+    pub(crate) tools: Vec<Isometry3<f64>>,
     segments: Vec<u32>,
 }
 
 impl Trace {
     /// Least distance of the way from a point, in mm.
-    fn distance(&self, point: &Isometry3<f64>) -> f64 {
+    pub(crate) fn distance(&self, point: &Isometry3<f64>) -> f64 {
         let p = point.translation.vector;
         let between = |pair: &[Isometry3<f64>]| {
             let (from, to) = (pair[0].translation.vector, pair[1].translation.vector);
@@ -122,7 +122,7 @@ impl Trace {
     }
 
     /// Speed of the tool centre point in each cycle, in mm/s.
-    fn speeds(&self) -> Vec<f64> {
+    pub(crate) fn speeds(&self) -> Vec<f64> {
         let speed =
             |pair: &[Isometry3<f64>]| (pair[1].translation.vector - pair[0].translation.vector).norm() * 1e6;
         self.tools.windows(2).map(speed).collect()

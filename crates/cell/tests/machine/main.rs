@@ -14,4 +14,5 @@ mod cycle;
 mod faults;
 mod no_alloc;
 mod pause;
+mod prefilter;
 mod recorded;
