@@ -3,8 +3,8 @@
 use crate::geometry::{PoseJet, Vector3};
 use crate::math::taylor::Taylor;
 
-/// The frame is not determined where the sine of the angle between travel and wire is below this.
-const PARALLEL: f64 = 1e-3;
+/// Least sine of the angle between travel and wire: 6°. Nearer to it the frame turns with every tremor of the wire.
+const LEAST_SINE: f64 = 0.1;
 
 /// Axes at one place of a seam, in the seam's parent frame: x along the travel, y = x × wire (to the left with the wire pointing
 /// down), z = x × y (out of the workpiece).
@@ -19,12 +19,12 @@ pub struct SeamFrame {
 }
 
 impl SeamFrame {
-    /// The frame of a motion along a seam with the wire along the tool's z axis. `None` where nothing travels, or along
-    /// the wire.
+    /// The frame of a motion along a seam with the wire along the tool's z axis. `None` where nothing travels, or within 6°
+    /// of the wire.
     #[must_use]
     pub fn of(seam: &PoseJet) -> Option<Self> {
         let x = seam.linear[0].try_normalize(f64::MIN_POSITIVE)?;
-        let y = x.cross(&(seam.pose.rotation * Vector3::z())).try_normalize(PARALLEL)?;
+        let y = x.cross(&(seam.pose.rotation * Vector3::z())).try_normalize(LEAST_SINE)?;
         Some(Self { x, y, z: x.cross(&y) })
     }
 

@@ -1,8 +1,8 @@
 //! A sensor's readings, where the sensor sits, and every reason not to believe one.
 
 use super::Offset;
-use super::frame::Frame;
 use crate::geometry::{Pose, PoseJet, Rotation, Vector3};
+use crate::path::SeamFrame;
 
 /// What a seam sensor says at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,10 +42,10 @@ impl Sensor {
     /// says: its axes are the path frame's. `None` where the path has no frame.
     #[must_use]
     pub fn mounting(taught: &PoseJet, look_ahead: f64) -> Option<Pose> {
-        let frame = Frame::of(taught)?;
-        let rotation = Rotation::from_basis_unchecked(&[frame.tangent, frame.left, frame.up]);
+        let frame = SeamFrame::of(taught)?;
+        let rotation = Rotation::from_basis_unchecked(&[frame.x, frame.y, frame.z]);
         let tcp_from_base = taught.pose.rotation.inverse();
-        let ahead = tcp_from_base * (frame.tangent * look_ahead);
+        let ahead = tcp_from_base * (frame.x * look_ahead);
         Some(Pose::from_parts(ahead.into(), tcp_from_base * rotation))
     }
 

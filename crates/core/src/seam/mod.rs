@@ -3,7 +3,7 @@
 //! | module | holds |
 //! |---|---|
 //! | `taught` | what tracking asks of the taught path: poses along it, the foot of a point on it; chains of paths |
-//! | `frame` | the path frame, and the motion of a path with an offset in it |
+//! | `frame` | the motion of a path with the lane in it |
 //! | `measurement` | a sensor's readings, where the sensor sits, and every reason not to believe one |
 //! | `poses` | where the torch was when a reading was exposed |
 //! | `gate` | spikes found among their neighbours on both sides |
@@ -38,7 +38,7 @@ mod tack;
 mod taught;
 mod tracker;
 
-pub use frame::{Frame, corrected, speed_factor};
+pub use frame::{corrected, speed_factor};
 pub use lane::{Lane, LaneJet, LaneRecord};
 pub use measurement::{Counts, Reading, Rejection, Sensor};
 pub use settings::{Budget, Filter, LostLane, Settings, SettingsError};

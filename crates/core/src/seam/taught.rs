@@ -3,10 +3,9 @@
 use core::fmt;
 
 use super::Offset;
-use super::frame::Frame;
 use crate::geometry::{PoseJet, Vector3};
 use crate::math::float::acos;
-use crate::path::{Measure, Path, SAME_POSITION};
+use crate::path::{Measure, Path, SAME_POSITION, SeamFrame};
 
 /// Steps towards a foot: from a guess within a few millimetres, four reach rounding on any curve that a torch follows.
 const STEPS: usize = 8;
@@ -62,8 +61,8 @@ pub fn foot(path: &impl TaughtPath, point: &Vector3, near: f64) -> Option<Foot> 
         let [tangent, curvature, _] = jet.linear;
         let along = across.dot(&tangent);
         if along.abs() <= SAME_POSITION {
-            let frame = Frame::of(&jet)?;
-            return Some(Foot { s, offset: frame.offset(&across), along });
+            let frame = SeamFrame::of(&jet)?;
+            return Some(Foot { s, offset: super::frame::across(&frame, &across), along });
         }
         // Towards the centre of curvature the feet draw together; at the centre there is none.
         let spread = (1.0 - across.dot(&curvature)).max(0.2);

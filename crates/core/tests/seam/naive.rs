@@ -2,7 +2,8 @@
 //! feed-forward of what the seam does.
 
 use seamline::otg::{Generator, Input, Limits, Output, State};
-use seamline::seam::{Frame, TaughtPath};
+use seamline::path::SeamFrame;
+use seamline::seam::TaughtPath;
 
 use crate::simulation::{Figures, PERIOD, Seam, Torch, World};
 
@@ -21,9 +22,9 @@ pub(crate) fn run<P: TaughtPath, S: Seam>(world: &mut World<'_, P, S>, speed: f6
         generator.update(&input, &mut output).expect("a finite target");
         output.pass_to_input(&mut input);
         let mut command = world.path.jet(torch.s).pose;
-        let frame = Frame::of(&world.path.jet(torch.s)).expect("a frame");
+        let frame = SeamFrame::of(&world.path.jet(torch.s)).expect("a frame");
         let offset = input.current.position;
-        command.translation.vector += frame.left * offset[0] + frame.up * offset[1];
+        command.translation.vector += frame.y * offset[0] + frame.z * offset[1];
         let (near, measured) = torch.follow(&command);
         for reading in world.readings(torch.time, torch.s, &measured) {
             input.target.position = [offset[0] + reading.lateral, offset[1] + reading.height];

@@ -6,8 +6,9 @@
 use std::collections::VecDeque;
 
 use seamline::geometry::{Pose, Vector3};
+use seamline::path::SeamFrame;
 use seamline::seam::{
-    Frame, LaneJet, Offset, Reading, SeamTracker, Sensor, Settings, TaughtPath, corrected, foot, speed_factor,
+    LaneJet, Offset, Reading, SeamTracker, Sensor, Settings, TaughtPath, corrected, foot, speed_factor,
 };
 
 use crate::random::Random;
@@ -170,10 +171,10 @@ impl<'a, P: TaughtPath, S: Seam> World<'a, P, S> {
 
     fn seam_point(&self, s: f64, seen: bool) -> Vector3 {
         let jet = self.path.jet(s);
-        let frame = Frame::of(&jet).expect("a frame");
+        let frame = SeamFrame::of(&jet).expect("a frame");
         let offset = self.seam.offset(s);
         let bump = if seen { self.seam.bump(s) } else { 0.0 };
-        jet.pose.translation.vector + frame.left * offset.x + frame.up * (offset.y + bump)
+        jet.pose.translation.vector + frame.y * offset.x + frame.z * (offset.y + bump)
     }
 
     /// Where the laser's plane cuts the seam: path coordinate, and the point in the sensor's frame.
