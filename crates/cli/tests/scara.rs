@@ -1,0 +1,153 @@
+//! Jobs on the built-in SCARA cell, as a user meets them; the motion is judged by the arm's definition.
+
+#![allow(clippy::expect_used, reason = "a failing test says what it missed")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// Two links bent to the left, a square with a quarter of a circle, and a descent; every point is a stop.
+const HEAD: &str = "/JOB\n//NAME PART\n//POS\n///NPOS 7,0,0,0,0,0\n///TOOL 0\n///POSTYPE ROBOT\n///RECTAN\n///RCONF 0,1,0,0,0,0\n";
+const POINTS: &str = "\
+C00000=350.000,-100.000,-130.000,180.0000,0.0000,0.0000
+C00001=350.000,-100.000,-160.000,180.0000,0.0000,0.0000
+C00002=450.000,-100.000,-160.000,180.0000,0.0000,30.0000
+C00003=478.284,-88.284,-160.000,180.0000,0.0000,30.0000
+C00004=490.000,-60.000,-160.000,180.0000,0.0000,30.0000
+C00005=490.000,40.000,-160.000,180.0000,0.0000,0.0000
+C00006=490.000,40.000,-120.000,180.0000,0.0000,0.0000
+";
+const MOVES: &str = "\
+//INST
+///DATE 2026/11/29 06:00
+///ATTR SC,RW
+///GROUP1 RB1
+NOP
+MOVJ C00000 VJ=50.00 PL=0
+MOVL C00001 V=100.0 PL=0
+MOVL C00002 V=160.0 PL=0
+MOVC C00002 V=160.0 PL=0
+MOVC C00003 V=160.0 PL=0
+MOVC C00004 V=160.0 PL=0
+MOVL C00005 V=160.0 PL=0
+MOVL C00006 V=100.0 PL=0
+END
+";
+
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).expect("a folder for results");
+    path
+}
+
+/// Runs a job of these points with some arguments; its folder and the program's answer.
+fn run(name: &str, points: &str, extra: &[&str]) -> (PathBuf, Output) {
+    let out = folder(name);
+    let job = out.join("PART.JBI");
+    fs::write(&job, format!("{HEAD}{points}{MOVES}")).expect("a job");
+    let results = out.join("out");
+    let output = Command::new(env!("CARGO_BIN_EXE_seamline"))
+        .arg("run")
+        .args([&job, Path::new("--out"), &results])
+        .args(extra)
+        .output()
+        .expect("the program starts");
+    (results, output)
+}
+
+fn message(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// The job's line that an arc belongs to.
+const ARC: u32 = 26;
+
+struct Row {
+    line: u32,
+    joints: [f64; 4],
+}
+
+fn recording(out: &Path) -> Vec<Row> {
+    let text = fs::read_to_string(out.join("recording.csv")).expect("a recording");
+    let mut lines = text.lines();
+    let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    assert_eq!(header[5..9], ["q1_rad", "q2_rad", "q3_m", "q4_rad"]);
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let joints = [5, 6, 7, 8].map(|column: usize| cells[column].parse().expect("a number"));
+        Row { line: cells[2].parse().expect("a line"), joints }
+    };
+    lines.map(row).collect()
+}
+
+/// Where the tool is: links of 325 mm and 275 mm, a stroke downward, and 80 mm of tool.
+fn tool([q1, q2, q3, _]: [f64; 4]) -> [f64; 3] {
+    let (first, second) = (q1.sin_cos(), (q1 + q2).sin_cos());
+    [0.325 * first.1 + 0.275 * second.1, 0.325 * first.0 + 0.275 * second.0, q3 - 0.08]
+}
+
+/// Greatest distance of a job line's motion from the line or circle it was to follow, in metres.
+fn off(rows: &[Row], line: u32, distance: impl Fn([f64; 3]) -> f64) -> f64 {
+    let places: Vec<_> = rows.iter().filter(|row| row.line == line).map(|row| tool(row.joints)).collect();
+    assert!(places.len() > 100, "line {line}: {} cycles", places.len());
+    places.into_iter().map(distance).fold(0.0, f64::max)
+}
+
+fn judge(out: &Path) {
+    let summary = fs::read_to_string(out.join("summary.json")).expect("a summary");
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("valid JSON");
+    assert_eq!(summary["verdict"], "ok", "{summary}");
+    let rows = recording(out);
+    // Lines of the job file: 23 leads along x, the arc round (450, −60), 27 along y, all at z = −160 mm.
+    assert!(off(&rows, 23, |[_, y, z]| (y + 0.1).abs().max((z + 0.16).abs())) < 1e-6);
+    let round = |[x, y, z]: [f64; 3]| (f64::hypot(x - 0.45, y + 0.06) - 0.04).abs().max((z + 0.16).abs());
+    assert!(off(&rows, ARC, round) < 1e-6);
+    assert!(off(&rows, 27, |[x, _, z]| (x - 0.49).abs().max((z + 0.16).abs())) < 1e-6);
+    let [x, y, z] = tool(rows[rows.len() - 1].joints);
+    assert!((x - 0.49).abs() < 1e-6 && (y - 0.04).abs() < 1e-6 && (z + 0.12).abs() < 1e-6);
+    // The period is a millisecond; limits as the cell has them.
+    let limits = [(4.0, 42.0), (6.3, 63.0), (1.0, 10.0), (31.5, 315.0)];
+    for (joint, (velocity, acceleration)) in limits.into_iter().enumerate() {
+        for k in 2..rows.len() {
+            let q = |back: usize| rows[k - back].joints[joint];
+            let v = (q(0) - q(1)) * 1e3;
+            let a = (q(0) - 2.0 * q(1) + q(2)) * 1e6;
+            assert!(v.abs() <= velocity * 1.06 && a.abs() <= acceleration * 1.01, "joint {joint}: {v} {a}");
+        }
+    }
+}
+
+#[test]
+fn a_job_runs_on_the_scara() {
+    let (out, output) = run("scara", POINTS, &["--cell", "scara"]);
+    assert!(output.status.success(), "{}", message(&output));
+    judge(&out);
+}
+
+#[test]
+fn a_tilted_tool_and_a_point_out_of_reach_are_refused_in_its_own_words() {
+    let tilted = POINTS.replace("-160.000,180.0000,0.0000,30.0000", "-160.000,180.0000,10.0000,30.0000");
+    let (_, output) = run("scara-tilted", &tilted, &["--cell", "scara"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(message(&output).contains("this arm holds it upright"), "{}", message(&output));
+    let far = POINTS.replace("C00005=490.000", "C00005=690.000");
+    let (results, output) = run("scara-far", &far, &["--cell", "scara"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(message(&output).contains("the arm reaches"), "{}", message(&output));
+    assert!(!results.exists(), "a refused job writes nothing");
+}
+
+/// The cell has a flexible mode: a prefilter can be made for it, and every stop is exact all the same. The default cell has none.
+#[test]
+fn a_prefilter_needs_a_mode() {
+    let (out, output) = run("scara-prefilter", POINTS, &["--cell", "scara", "--prefilter", "zvd"]);
+    assert!(output.status.success(), "{}", message(&output));
+    let rows = recording(&out);
+    let [x, y, z] = tool(rows[rows.len() - 1].joints);
+    assert!((x - 0.49).abs() < 1e-6 && (y - 0.04).abs() < 1e-6 && (z + 0.12).abs() < 1e-6);
+    let (_, output) = run("no-mode", POINTS, &["--prefilter", "zvd"]);
+    assert_eq!(output.status.code(), Some(1));
+    let expected = "--prefilter zvd: expected a [[flexible_mode]] to make the prefilter for";
+    assert!(message(&output).contains(expected), "{}", message(&output));
+}
