@@ -229,6 +229,8 @@ const MAX_STEPS: usize = 16;
 /// The step after one of size d is about d³ (P″²/(4 P′²) + |P‴|/(6 P′)). With P′ ≥ (x₁ + x₂)/2, |P″| ≤ 1/x₁ + 1/x₂ and |P‴| ≤ 3/8 (1/x₁³ + 1/x₂³)
 /// that is rounding, beside the velocities x₁² and x₂² that the ramps gain, where d is this fraction of x₁ x₂.
 const LAST_STEP: f64 = 3e-6;
+/// A displacement met to this, relative to the ways that make it up, is met.
+const ARRIVED: f64 = 1e-12;
 /// Displacements that differ by this fraction of their terms are one.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -265,10 +267,14 @@ impl Ramps {
             let step = excess * slope / between(bent, 0.5 * square, 2.0 * square);
             w -= step;
             if step.abs() <= LAST_STEP * (r1.peak.x * r2.peak.x) || excess.abs() <= noise {
-                let (first, second) = (first.to(w), second.to(w));
-                let rest = t - first.duration - second.duration;
-                let good = rest >= 0.0 && v_min <= w && w <= v_max;
-                return good.then_some(Self { first: first.peak, second: second.peak, rest, w });
+                let (r1, r2) = (first.to(w), second.to(w));
+                let rest = t - r1.duration - r2.duration;
+                let excess = r1.displacement + r2.displacement + rest * w - displacement;
+                // Across the velocity at which a ramp turns round, the last step need not be one.
+                if excess.abs() <= ARRIVED * (displacement.abs() + t * (v0.abs() + vf.abs() + w.abs())) {
+                    let good = rest >= 0.0 && v_min <= w && w <= v_max;
+                    return good.then_some(Self { first: r1.peak, second: r2.peak, rest, w });
+                }
             }
         }
         None
