@@ -166,7 +166,8 @@ fn is_smooth(input: &Input<3>, before: &State<3>, after: &State<3>, cycle: f64) 
                 after.position[axis],
                 p + cycle * (v + cycle * a / 2.0),
                 j * cycle * cycle * cycle / 6.0,
-                p.abs() + size_v * cycle,
+                // Both ends count: they are what a displacement is rounded by.
+                p.abs() + input.target.position[axis].abs() + size_v * cycle,
             )
     })
 }

@@ -160,11 +160,11 @@ impl Family {
             island: None,
             reversed,
         };
-        // The peak must reach a₀: x² = n² + C ≥ a₀². Where r is rounding only, there is no gap between island and main arc.
-        let noise = NOISE * (a0 * a0 + af * af + v0.abs() + vf.abs());
+        // The peak must reach a₀: x² = n² + C ≥ a₀².
         let r_squared = a0 * a0 - c;
-        if a0 > 0.0 && r_squared > noise {
+        if a0 > 0.0 && r_squared > 0.0 {
             let r = sqrt(r_squared);
+            let noise = NOISE * (a0 * a0 + af * af + v0.abs() + vf.abs());
             if af > 0.0 && af * af >= r_squared - noise {
                 family.island = Some((-af, -smaller(r, af)));
             }
@@ -236,27 +236,16 @@ impl Family {
     }
 
     /// The start's motion, longer by the time `more`, as it would be if the velocities were others by up to `noise`.
-    ///
-    /// Its first rise, or its last, has no duration. With it goes the time of the valley, or of the peak, by 1/n or 1/x of what is
-    /// added to the velocities; by no more than the root of it where that is zero.
     #[cold]
     pub(super) fn moved_start(&self, start: &Extremal, more: f64, noise: f64) -> Option<Extremal> {
-        let at_first = self.start > -self.af;
-        let turning = if at_first { start.n } else { start.x };
-        let bound = noise / larger(turning, sqrt(noise));
-        if more.is_nan() || more.abs() > bound {
-            return None;
-        }
-        let mut moved = Extremal { p: start.p + start.slope * more, t: start.t + more, ..*start };
-        let half = 0.5 * more;
-        if at_first {
-            moved.e += half;
-            moved.n = if start.e > start.n { start.n } else { moved.e };
-        } else {
-            moved.t_peak += more;
-            moved.x = if start.t_peak > 2.0 * start.x { start.x } else { start.x + half };
-        }
-        Some(moved)
+        moved(start, self.start > -self.af, more, noise)
+    }
+
+    /// Likewise the motion at that end of the island for which `more` asks for the smaller part of what is allowed.
+    #[cold]
+    pub(super) fn moved_island(&self, more: impl Fn(&Extremal) -> f64, noise: f64) -> Option<Extremal> {
+        let (first, last) = self.island()?;
+        moved(&last, true, more(&last), noise).or_else(|| moved(&first, false, more(&first), noise))
     }
 
     /// First and last motion of the island, an interval of possible times before the main arc.
@@ -487,6 +476,28 @@ impl Family {
             Shape { peak: x, peak_hold: hold_x, cruise, velocity, valley: n, valley_hold: hold_n }
         }
     }
+}
+
+/// A motion whose first rise, or its last, has no duration, longer by the time `more`, as it would be if the velocities were others by up
+/// to `noise`.
+///
+/// By what is added to the velocities goes 1/n or 1/x of it to the time of the valley, or of the peak; no more than its root where
+/// that is zero.
+fn moved(motion: &Extremal, first_is_none: bool, more: f64, noise: f64) -> Option<Extremal> {
+    let turning = if first_is_none { motion.n.abs() } else { motion.x };
+    if !(more.abs() <= noise / larger(turning, sqrt(noise))) {
+        return None;
+    }
+    let mut moved = Extremal { p: motion.p + motion.slope * more, t: motion.t + more, ..*motion };
+    let half = 0.5 * more;
+    if first_is_none {
+        moved.e += half;
+        moved.n = if motion.e > motion.n { motion.n } else { moved.e };
+    } else {
+        moved.t_peak += more;
+        moved.x = if motion.t_peak > 2.0 * motion.x { motion.x } else { motion.x + half };
+    }
+    Some(moved)
 }
 
 impl Extremal {

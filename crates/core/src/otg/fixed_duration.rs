@@ -66,7 +66,7 @@ impl Draft<'_> {
         let Arrival { sign, shape, .. } = *arrival;
         let motion = Extreme { shape, sign, a0, af };
         if arrival.from_end {
-            return self.backward(&motion.pieces());
+            return self.backward(&motion.all());
         }
         let [rise, hold, fall, end_of_fall, last_hold, last_rise] = motion.pieces();
         for piece in [rise, hold, fall] {

@@ -24,10 +24,6 @@ pub(super) struct Demand {
 
 /// Durations that differ by this fraction are the same number of steps: a few roundings.
 const SAME: f64 = 1e-15;
-
-/// An axis that cannot arrive at the common time, but could earlier by this fraction of it, does so: on the last stretch of a motion that is
-/// planned anew on every cycle, all axes have this one time but for rounding, and any other one is far later.
-const ALMOST: f64 = 1e-9;
 /// Least durations this near, relative to the common time, are one but for what rounding adds up to beside a moving target.
 const ONE_TIME: f64 = 1e-6;
 
@@ -46,6 +42,15 @@ impl Plan {
     /// Has the axis arrive as early as it can.
     pub(super) fn find_earliest(&mut self, axis: &Axis) {
         self.earliest = axis.earliest(0.0, &mut self.solution);
+    }
+
+    /// The same once more, at the least time but for rounding if the axis is to hurry.
+    #[cold]
+    fn find_again(&mut self, axis: &Axis, hurried: bool) {
+        self.find_earliest(axis);
+        if hurried && let Some(earliest) = axis.earliest_but_for_rounding(&mut self.solution) {
+            self.earliest = earliest;
+        }
     }
 
     /// Has the axis arrive at `t`, if it can.
@@ -87,34 +92,27 @@ pub(super) fn common_duration<const N: usize>(
 ) -> Result<f64, Error> {
     let (mut t, mut last) = latest(plans, roles);
     let mut hurried = [false; N];
-    let mut settled = [false; N];
     for _ in 0..4 * N + 3 {
         t = demand.next(t);
         if !t.is_finite() {
             break;
         }
         let together = |axis: &usize| roles[*axis] == Role::Together;
-        let Some(late) =
-            (0..N).filter(together).find(|&axis| !settled[axis] && !plans[axis].arrive(&axes[axis], t))
-        else {
+        let Some(late) = (0..N).filter(together).find(|&axis| !plans[axis].arrive(&axes[axis], t)) else {
             return Ok(t);
         };
-        let one_time = t - plans[late].earliest <= ONE_TIME * t;
-        if one_time && late != last && !hurried[last] && plans[last].earliest == t {
-            hurried[last] = true;
-            if let Some(plan) = hurry(&axes[last], &axes[late], plans[late].earliest, t) {
+        let before = (1.0 - ONE_TIME) * t;
+        let one_time = || plans[late].earliest >= before || axes[late].at(before).is_some();
+        if late != last && !hurried[last] && plans[last].earliest == t && one_time() {
+            let waiting = (&axes[late], plans[late].earliest);
+            if hurry(&axes[last], waiting, t) {
+                hurried[last] = true;
                 for axis in (0..N).filter(together) {
-                    plans[axis].find_earliest(&axes[axis]);
+                    plans[axis].find_again(&axes[axis], hurried[axis]);
                 }
-                plans[last] = plan;
                 (t, last) = latest(plans, roles);
                 continue;
             }
-        }
-        if t - plans[late].earliest <= ALMOST * t && plans[late].earliest <= t {
-            plans[late].find_earliest(&axes[late]);
-            settled[late] = true;
-            continue;
         }
         (t, last) = (plans[late].arrive_after(&axes[late], t), late);
     }
@@ -137,9 +135,8 @@ fn latest<const N: usize>(plans: &[Plan; N], roles: &[Role; N]) -> (f64, usize) 
 /// arrive at any later one would have to come round again. If it can arrive at what is the least time `t` of the other but for the
 /// rounding of positions, the other takes that.
 #[cold]
-fn hurry(setting: &Axis, waiting: &Axis, earliest: f64, t: f64) -> Option<Plan> {
-    let mut plan = Plan::AT_ONCE;
-    plan.earliest = setting.earliest_but_for_rounding(&mut plan.solution)?;
-    let possible = earliest >= plan.earliest || waiting.at(plan.earliest).is_some();
-    (plan.earliest < t && possible).then_some(plan)
+fn hurry(setting: &Axis, (waiting, its_earliest): (&Axis, f64), t: f64) -> bool {
+    setting
+        .earliest_but_for_rounding(&mut Solution::AtOnce)
+        .is_some_and(|sooner| sooner < t && (its_earliest >= sooner || waiting.at(sooner).is_some()))
 }

@@ -63,6 +63,9 @@ enum Side {
     Below,
 }
 
+/// A displacement that differs by more, relatively, is not met by what the root search leaves, but taken for equal.
+const EXACT: f64 = 16.0 * f64::EPSILON;
+
 impl ThirdOrder {
     /// `coordinates`: how far the displacement may be off because its ends are large.
     pub(super) fn new(problem: Problem, coordinates: f64) -> Self {
@@ -83,17 +86,18 @@ impl ThirdOrder {
         if let Some(arrival) = self.earliest_on_island(from) {
             return arrival;
         }
-        let p = self.problem.displacement;
-        if from > self.start.t {
-            let families = self.families();
+        if from > 0.0
+            && let families = self.families()
+            && families.on_island(from) == Some(false)
+        {
             let span = families.span(from, false);
             return match self.side(&span, self.resolution(from)) {
-                Side::Inside => families.nearest(p, &span),
+                Side::Inside => families.nearest(self.problem.displacement, &span),
                 Side::Above => self.up_to(&span.up),
                 Side::Below => self.down_to(&families.down, &span.down),
             };
         }
-        self.earliest_from_start(p)
+        self.earliest_from_start(from)
     }
 
     /// The same problem, with the target nearer by the rounding of positions as `arrival` comes to it.
@@ -103,47 +107,33 @@ impl ThirdOrder {
         nearer
     }
 
-    /// The first arrival on the main arc. At its start both families have the same motion.
-    fn earliest_from_start(&self, p: f64) -> Arrival {
-        let start = &self.start;
-        if (p - start.p).abs() <= self.resolution(start.t) {
-            return Arrival { from_end: true, ..Arrival::up(&self.up, start) };
+    /// The first arrival on the main arc, whose start is not before `from` but for rounding. There both families have the same motion.
+    fn earliest_from_start(&self, from: f64) -> Arrival {
+        let (p, start) = (self.problem.displacement, &self.start);
+        if (p - start.p).abs() <= self.resolution(start.t) && start.t >= from {
+            return Arrival::up(&self.up, start, p);
         }
         // Where the way leads on towards p, the time grows from the start's on as p does. Otherwise the axis has to come round again, and must
         // not do so for a rounding error.
+        let near = |slope: f64| {
+            let near = if slope > 0.0 { None } else { self.near_start() };
+            near.filter(|arrival| arrival.t >= from)
+        };
         if p > start.p {
-            let round_again = start.slope <= 0.0;
-            self.near_start(p, round_again).unwrap_or_else(|| self.up_to(start))
+            near(start.slope).unwrap_or_else(|| self.up_to(start))
         } else {
             let down = self.down();
             let down_start = down.at_start();
-            let round_again = down_start.slope <= 0.0;
-            self.near_start(p, round_again).unwrap_or_else(|| self.down_to(&down, &down_start))
+            near(down_start.slope).unwrap_or_else(|| self.down_to(&down, &down_start))
         }
     }
 
-    /// The motion at the start, moved by the rounding of the velocities so that it leads to `p`.
-    fn near_start(&self, p: f64, round_again: bool) -> Option<Arrival> {
-        if !round_again {
-            return None;
-        }
-        let near = self.up.moved_start(&self.start, (p - self.start.p) / self.start.slope, self.rounding)?;
-        Some(Arrival { from_end: true, ..Arrival::up(&self.up, &near) })
-    }
-
-    /// The extreme motion that arrives after the time `t`, if one does but for rounding.
+    /// The motion at the start, if other velocities within rounding let it lead to the target.
     #[cold]
-    fn nearest_at(&self, t: f64, span: Option<&Span>) -> Option<Arrival> {
-        let p = self.problem.displacement;
-        let resolution = self.resolution(t);
-        if let Some(span) = span {
-            let arrival = self.families().nearest(p, span);
-            let off = smaller((span.up.p - p).abs(), (span.down.p + p).abs());
-            return (off <= resolution).then_some(Arrival { from_end: true, ..arrival });
-        }
-        let moved = self.up.moved_start(&self.start, t - self.start.t, self.rounding)?;
-        let close = (moved.p - p).abs() <= resolution;
-        close.then_some(Arrival { from_end: true, ..Arrival::up(&self.up, &moved) })
+    fn near_start(&self) -> Option<Arrival> {
+        let (p, start) = (self.problem.displacement, &self.start);
+        let near = self.up.moved_start(start, (p - start.p) / start.slope, self.rounding)?;
+        Some(Arrival::moved(&self.up, &near, 1.0))
     }
 
     /// As [`Self::at`], before the times that are possible for good.
@@ -153,26 +143,43 @@ impl ThirdOrder {
 
     /// The motion that arrives after the time `t`, if it is a possible one: between the two extreme ones, or one of them.
     pub(super) fn at(&self, t: f64) -> Option<Passage> {
+        let p = self.problem.displacement;
         let families = self.families();
-        let on_island = t < self.start.t;
-        if on_island && !families.island().is_some_and(|(first, last)| first.t <= t && t <= last.t) {
-            return self.nearest_at(t, None).map(Passage::Extreme);
-        }
+        let Some(on_island) = families.on_island(t) else {
+            return self.near_ends_at(&families, t).map(Passage::Extreme);
+        };
         let span = families.span(t, on_island);
         let Span { up, down } = span;
-        let p = self.problem.displacement;
-        if p > up.p || -p > down.p {
-            return self.nearest_at(t, Some(&span)).map(Passage::Extreme);
+        if p <= up.p && -p <= down.p {
+            let reach = up.p + down.p;
+            let share = if reach > 0.0 { (p + down.p) / reach } else { 1.0 };
+            let (up, down) = (families.up.shape(&up), families.down.shape(&down));
+            return Some(Passage::Mean(Mixture { up, down, share }));
         }
-        let reach = up.p + down.p;
-        let share = if reach > 0.0 { (p + down.p) / reach } else { 1.0 };
-        Some(Passage::Mean(Mixture { up: families.up.shape(&up), down: families.down.shape(&down), share }))
+        let close = matches!(self.side(&span, 16.0 * self.resolution(t)), Side::Inside);
+        close.then(|| Passage::Extreme(families.nearest(p, &span)))
+    }
+
+    /// The motion at the start of the main arc or an end of the island that takes the time `t` and leads to the target but for rounding.
+    #[cold]
+    fn near_ends_at(&self, families: &Families, t: f64) -> Option<Arrival> {
+        let (p, noise, resolution) = (self.problem.displacement, self.rounding, 16.0 * self.resolution(t));
+        let near = |sign: f64| {
+            let family = if sign > 0.0 { &families.up } else { &families.down };
+            let leads = |moved: &Extremal| (moved.p - sign * p).abs() <= resolution;
+            let start = family.at_start();
+            let start = family.moved_start(&start, t - start.t, noise);
+            let island = || family.moved_island(|end| t - end.t, noise);
+            let found = start.filter(leads).or_else(|| island().filter(leads))?;
+            Some(Arrival::moved(family, &found, sign))
+        };
+        near(1.0).or_else(|| near(-1.0))
     }
 
     /// Before the times that are possible for good there may be an interval of possible ones, an island, if the acceleration need not
     /// change its sign.
     pub(super) fn earliest_on_island(&self, from: f64) -> Option<Arrival> {
-        let Problem { displacement: p, v0, a0, vf, af, .. } = self.problem;
+        let Problem { v0, a0, vf, af, .. } = self.problem;
         // The velocity must change by more than on the straight way from a₀ to a_f, and by less than on the way via zero. (Not by
         // rounding: the families decide.)
         let (change, sum) = ((vf - v0).abs(), a0 * a0 + af * af);
@@ -186,42 +193,54 @@ impl ThirdOrder {
             return None;
         }
         let families = self.families();
-        if let Some((first, last)) = families.island() {
-            if from > last.t {
-                return None;
+        let arrival = match families.island() {
+            Some((first, last)) if from <= last => {
+                let span = families.span(larger(from, first), true);
+                self.earliest_from_span(&families, &span, self.resolution(last))
             }
-            let span = families.span(larger(from, first.t), true);
-            let resolution = self.resolution(last.t);
-            return match self.side(&span, resolution) {
-                Side::Inside => Some(families.nearest(p, &span)),
-                Side::Above => {
-                    let extremal = families.up.first_reaching_on_island(p, &span.up, resolution)?;
-                    Some(Arrival::up(&families.up, &extremal))
-                }
-                Side::Below => {
-                    let extremal = families.down.first_reaching_on_island(-p, &span.down, resolution)?;
-                    Some(Arrival::down(&families.down, &extremal))
-                }
-            };
-        }
-        // An island of one motion only, which rounding has hidden from one of the families.
-        let meets = |extremal: &Extremal, p: f64| {
-            from <= extremal.t && (p - extremal.p).abs() <= self.resolution(extremal.t)
-        };
-        match (families.up.island(), families.down.island()) {
-            (Some((only, _)), None) if meets(&only, p) => Some(Arrival::up(&families.up, &only)),
-            (None, Some((only, _))) if meets(&only, -p) => Some(Arrival::down(&families.down, &only)),
             _ => None,
+        };
+        // An island of one motion only may be hidden from one of the families by rounding, or from both.
+        arrival.or_else(|| self.near_island(&families).filter(|arrival| arrival.t >= from))
+    }
+
+    fn earliest_from_span(&self, families: &Families, span: &Span, resolution: f64) -> Option<Arrival> {
+        let p = self.problem.displacement;
+        match self.side(span, resolution) {
+            Side::Inside => Some(families.nearest(p, span)),
+            Side::Above => {
+                let extremal = families.up.first_reaching_on_island(p, &span.up, resolution)?;
+                Some(Arrival::up(&families.up, &extremal, p))
+            }
+            Side::Below => {
+                let extremal = families.down.first_reaching_on_island(-p, &span.down, resolution)?;
+                Some(Arrival::down(&families.down, &extremal, p))
+            }
         }
+    }
+
+    /// The motion at an end of the island, if other velocities within rounding let it lead to the target.
+    #[cold]
+    fn near_island(&self, families: &Families) -> Option<Arrival> {
+        let near = |sign: f64| {
+            let family = if sign > 0.0 { &families.up } else { &families.down };
+            let more = |end: &Extremal| {
+                let off = sign * self.problem.displacement - end.p;
+                if off.abs() <= self.resolution(end.t) { 0.0 } else { off / end.slope }
+            };
+            Some(Arrival::moved(family, &family.moved_island(more, self.rounding)?, sign))
+        };
+        near(1.0).or_else(|| near(-1.0))
     }
 
     fn up_to(&self, from: &Extremal) -> Arrival {
-        let extremal = self.up.first_reaching(self.problem.displacement, from, self.resolution(from.t));
-        Arrival::up(&self.up, &extremal)
+        let p = self.problem.displacement;
+        Arrival::up(&self.up, &self.up.first_reaching(p, from, self.resolution(from.t)), p)
     }
 
     fn down_to(&self, down: &Family, from: &Extremal) -> Arrival {
-        Arrival::down(down, &down.first_reaching(-self.problem.displacement, from, self.resolution(from.t)))
+        let p = self.problem.displacement;
+        Arrival::down(down, &down.first_reaching(-p, from, self.resolution(from.t)), p)
     }
 
     fn down(&self) -> Family {
@@ -245,17 +264,26 @@ impl ThirdOrder {
 }
 
 impl Families {
-    /// First and last motion of the island, if both families have one.
-    fn island(&self) -> Option<(Extremal, Extremal)> {
-        self.down.island().and(self.up.island())
+    /// First and last time of the island, if both families have one.
+    fn island(&self) -> Option<(f64, f64)> {
+        let ((first, last), (other_first, other_last)) = (self.up.island()?, self.down.island()?);
+        Some((larger(first.t, other_first.t), smaller(last.t, other_last.t)))
+    }
+
+    /// Whether the time `t` is one of the island or, if not, of the main arcs; rounding may have moved the ends of one or the other family.
+    fn on_island(&self, t: f64) -> Option<bool> {
+        if t >= self.up.at_start().t && t >= self.down.at_start().t {
+            return Some(false);
+        }
+        self.island().is_some_and(|(first, last)| first <= t && t <= last).then_some(true)
     }
 
     /// The one of the two motions that meets the displacement but for rounding.
     fn nearest(&self, p: f64, span: &Span) -> Arrival {
         if span.up.p - p <= p + span.down.p {
-            Arrival::up(&self.up, &span.up)
+            Arrival::up(&self.up, &span.up, p)
         } else {
-            Arrival::down(&self.down, &span.down)
+            Arrival::down(&self.down, &span.down, p)
         }
     }
 
@@ -265,11 +293,18 @@ impl Families {
 }
 
 impl Arrival {
-    fn up(family: &Family, extremal: &Extremal) -> Self {
-        Self { t: extremal.t, sign: 1.0, shape: family.shape(extremal), from_end: false }
+    fn up(family: &Family, extremal: &Extremal, p: f64) -> Self {
+        let from_end = (extremal.p - p).abs() > EXACT * p.abs();
+        Self { from_end, ..Self::moved(family, extremal, 1.0) }
     }
 
-    fn down(family: &Family, extremal: &Extremal) -> Self {
-        Self { t: extremal.t, sign: -1.0, shape: family.shape(extremal), from_end: false }
+    fn down(family: &Family, extremal: &Extremal, p: f64) -> Self {
+        let from_end = (extremal.p + p).abs() > EXACT * p.abs();
+        Self { from_end, ..Self::moved(family, extremal, -1.0) }
+    }
+
+    /// A motion that leads to the target but for rounding.
+    fn moved(family: &Family, extremal: &Extremal, sign: f64) -> Self {
+        Self { t: extremal.t, sign, shape: family.shape(extremal), from_end: true }
     }
 }
