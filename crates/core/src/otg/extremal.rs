@@ -485,7 +485,8 @@ impl Family {
 /// that is zero.
 fn moved(motion: &Extremal, first_is_none: bool, more: f64, noise: f64) -> Option<Extremal> {
     let turning = if first_is_none { motion.n.abs() } else { motion.x };
-    if !(more.abs() <= noise / larger(turning, sqrt(noise))) {
+    // Not a number where the slope is zero.
+    if more.is_nan() || more.abs() > noise / larger(turning, sqrt(noise)) {
         return None;
     }
     let mut moved = Extremal { p: motion.p + motion.slope * more, t: motion.t + more, ..*motion };
