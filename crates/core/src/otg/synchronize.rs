@@ -70,12 +70,12 @@ impl Plan {
         solution.is_some()
     }
 
-    /// Has the axis arrive as soon after `t` as it can. Says when.
+    /// Has the axis arrive as soon after `t` as it can; that is `t` where it differs by rounding from the only time there is. Says when.
     fn arrive_after(&mut self, axis: &Axis, t: f64) -> f64 {
         if self.earliest <= t {
-            self.earliest = axis.earliest(t, &mut self.solution);
+            self.earliest = larger(axis.earliest(t, &mut self.solution), t);
         }
-        larger(self.earliest, t)
+        self.earliest
     }
 }
 
