@@ -22,6 +22,8 @@ pub(super) struct AxisInput {
     pub(super) a_max: f64,
     pub(super) a_min: f64,
     pub(super) jerk: f64,
+    /// Velocity of the frame in which all this is said: that of the target, if it moves on.
+    pub(super) drift: f64,
     /// Magnitude of the coordinates, which says how exact the displacement is.
     pub(super) coordinates: f64,
 }
@@ -34,18 +36,24 @@ impl AxisInput {
         let from =
             Point { p: current.position[axis], v: current.velocity[axis], a: current.acceleration[axis] };
         let control = input.control[axis];
+        let mut drift = 0.0;
         if control == Control::Velocity {
             to.p = from.p;
+        } else if input.target_moves[axis] {
+            drift = to.v;
         }
+        let from = Point { v: from.v - drift, ..from };
+        to.v -= drift;
         Self {
             control,
             current: from,
             target: to,
-            v_max: limits.velocity_max[axis],
-            v_min: limits.velocity_min[axis],
+            v_max: limits.velocity_max[axis] - drift,
+            v_min: limits.velocity_min[axis] - drift,
             a_max: limits.acceleration_max[axis],
             a_min: limits.acceleration_min[axis],
             jerk: limits.jerk_max[axis],
+            drift,
             coordinates: from.p.abs() + to.p.abs(),
         }
     }
@@ -61,10 +69,10 @@ impl AxisInput {
     /// The least duration jumps at such a state: one rounding error beyond a moving target, the axis would have to come
     /// round again.
     fn is_at_target(&self) -> bool {
-        let Self { current, target, control, jerk, .. } = self;
+        let Self { current, target, control, jerk, drift, .. } = self;
         let close = |a: f64, b: f64, size: f64| (a - b).abs() <= NOISE * size;
         (*control == Control::Velocity || close(current.p, target.p, self.coordinates))
-            && close(current.v, target.v, current.v.abs() + target.v.abs())
+            && close(current.v, target.v, current.v.abs() + target.v.abs() + drift.abs())
             && (*jerk == f64::INFINITY || close(current.a, target.a, current.a.abs() + target.a.abs()))
     }
 }

@@ -102,6 +102,10 @@ pub struct Input<const N: usize> {
     pub current: State<N>,
     /// Where it ends. Positions do not matter in velocity control.
     pub target: State<N>,
+    /// Whether the target goes on at its velocity from now on, so that the axis has to meet it where it will be then. For targets
+    /// that move and are sent anew on every cycle: the plan then stays the same as long as the target keeps its velocity. In velocity
+    /// control it does not matter. See `docs/otg.md`, section 11.
+    pub target_moves: [bool; N],
     /// The limits.
     pub limits: Limits<N>,
     /// The motion shall take at least this long, in seconds.
@@ -120,6 +124,7 @@ impl<const N: usize> Input<N> {
             enabled: [true; N],
             current,
             target,
+            target_moves: [false; N],
             limits,
             duration_min: None,
             duration_step: None,

@@ -36,8 +36,9 @@ impl<const N: usize> Line<N> {
         let member = |axis: &usize| members[*axis];
         let first = (0..N).find(member).unwrap_or(0);
         let control = axes[first].control;
-        // What is reached must be the same, and whether accelerations count.
-        let kind = |axis: usize| (axes[axis].control, axes[axis].jerk == f64::INFINITY);
+        // What is reached must be the same, whether it moves, and whether accelerations count.
+        let kind =
+            |axis: usize| (axes[axis].control, axes[axis].jerk == f64::INFINITY, input.target_moves[axis]);
         if let Some(other) = (0..N).filter(member).find(|&axis| kind(axis) != kind(first)) {
             return Err(other);
         }
@@ -82,7 +83,8 @@ fn parallels<const N: usize>(axes: &[AxisInput; N], control: Control) -> [Parall
     [
         vector(PARALLEL_POSITION, if in_position { displacement } else { change }),
         vector(PARALLEL, if in_position { |a| (a.current.v, velocity_size(a)) } else { nothing }),
-        vector(PARALLEL, if in_position { |a| (a.target.v, velocity_size(a)) } else { nothing }),
+        // A target that moves on must do so along the line.
+        vector(PARALLEL, if in_position { |a| (a.target.v + a.drift, velocity_size(a)) } else { nothing }),
         vector(PARALLEL, |a| (a.current.a, acceleration_size(a))),
         vector(PARALLEL, |a| (a.target.a, acceleration_size(a))),
     ]
@@ -91,7 +93,7 @@ fn parallels<const N: usize>(axes: &[AxisInput; N], control: Control) -> [Parall
 /// The limit, or the velocities themselves where there is none.
 fn velocity_size(axis: &AxisInput) -> f64 {
     let limit = axis.v_max.max(-axis.v_min);
-    let own = axis.current.v.abs().max(axis.target.v.abs());
+    let own = axis.current.v.abs().max(axis.target.v.abs()) + axis.drift.abs();
     if limit < f64::INFINITY && axis.control == Control::Position { limit.max(own) } else { own }
 }
 
@@ -179,6 +181,7 @@ fn scalar<const N: usize>(
         a_max: f64::INFINITY,
         a_min: f64::NEG_INFINITY,
         jerk: f64::INFINITY,
+        drift: own.drift,
         coordinates: own.coordinates,
     };
     for axis in (0..N).filter(|&axis| members[axis] && direction[axis] != 0.0) {

@@ -121,6 +121,9 @@ pub fn calculate_into<const N: usize>(input: &Input<N>, trajectory: &mut Traject
     if let Some(line) = &groups.line {
         spread(input, line, trajectory)?;
     }
+    for axis in (0..N).filter(|&axis| input.target_moves[axis] && groups.roles[axis] != Role::Off) {
+        trajectory.profiles[axis].carry(AxisInput::of(input, axis).drift);
+    }
     trajectory.check_positions(input)
 }
 

@@ -226,6 +226,18 @@ impl Profile {
         profile
     }
 
+    /// What is said in a frame that moves at the velocity `drift`, in the frame at rest.
+    pub(super) fn carry(&mut self, drift: f64) {
+        let mut elapsed = 0.0;
+        for phase in &mut self.phases[..self.len] {
+            phase.position += drift * elapsed;
+            phase.velocity += drift;
+            elapsed += phase.duration;
+        }
+        self.end.position += drift * self.duration;
+        self.end.velocity += drift;
+    }
+
     /// Whether no number has overflowed.
     pub(super) fn is_finite(&self) -> bool {
         let finite = |p: &Phase| (p.position + p.velocity + p.acceleration + p.jerk).is_finite();

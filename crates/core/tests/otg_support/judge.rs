@@ -2,7 +2,7 @@
 //!
 //! Nothing here comes from the generator but the durations and the controls of the phases.
 
-use seamline::otg::{Control, Input, Order, Phase, Profile, Trajectory};
+use seamline::otg::{Control, Input, Order, Phase, Profile, State, Trajectory};
 
 /// The worst found, each relative to the problem's own scale.
 #[derive(Debug, Clone, Copy, Default)]
@@ -123,7 +123,9 @@ fn judge_axis<const N: usize>(
         now = now.on(phase.duration, phase.jerk);
     }
     let (target, end) = (&input.target, profile.end());
-    let to_p = if position_control { target.position[axis] } else { end.position };
+    let drift = if input.target_moves[axis] { target.velocity[axis] } else { 0.0 };
+    let to_p =
+        if position_control { target.position[axis] + drift * profile.duration() } else { end.position };
     verdict.position = off(now.p, to_p, scale.p);
     if profile.order() != Order::First {
         verdict.velocity = off(now.v, target.velocity[axis], scale.v);
@@ -211,4 +213,26 @@ fn turn(phase: &Phase) -> f64 {
 fn beyond(value: f64, (low, high): (f64, f64), scale: f64) -> f64 {
     let over = |excess: f64, bound: f64| if excess > 0.0 { excess / scale.max(bound.abs()) } else { 0.0 };
     if value.is_nan() { f64::NAN } else { over(value - high, high).max(over(low - value, low)) }
+}
+
+/// Continuity from one cycle to the next within what the jerk limits allow.
+pub fn is_smooth<const N: usize>(input: &Input<N>, before: &State<N>, after: &State<N>, cycle: f64) -> bool {
+    (0..N).all(|axis| {
+        let (p, v, a) = (before.position[axis], before.velocity[axis], before.acceleration[axis]);
+        let j = input.limits.jerk_max[axis];
+        let within = |x: f64, mean: f64, reach: f64, size: f64| {
+            (x - mean).abs() <= reach * (1.0 + 1e-9) + 1e-12 * size
+        };
+        let size_v = v.abs() + input.limits.velocity_max[axis].max(-input.limits.velocity_min[axis]);
+        let size_a = a.abs() + input.limits.acceleration_max[axis].max(-input.limits.acceleration_min[axis]);
+        within(after.acceleration[axis], a, j * cycle, size_a)
+            && within(after.velocity[axis], v + a * cycle, j * cycle * cycle / 2.0, size_v)
+            && within(
+                after.position[axis],
+                p + cycle * (v + cycle * a / 2.0),
+                j * cycle * cycle * cycle / 6.0,
+                // Both ends count: they are what a displacement is rounded by.
+                p.abs() + input.target.position[axis].abs() + size_v * cycle,
+            )
+    })
 }
