@@ -188,6 +188,30 @@ impl<'a> Object<'a> {
         self.get(key).map(read).transpose()
     }
 
+    /// Fills `into` from true or false for all or a list of one for each; nothing happens if it is missing.
+    pub(crate) fn flags(&self, key: &str, into: &mut [bool]) -> Result<(), Mistake> {
+        let flag = |place: &str, value: &Value| {
+            value.as_bool().ok_or_else(|| Mistake::value(place, value, "true or false"))
+        };
+        match self.get(key) {
+            None => Ok(()),
+            Some(Value::Array(items)) if items.len() == into.len() => {
+                for (index, (to, item)) in into.iter_mut().zip(items).enumerate() {
+                    *to = flag(&format!("{}[{index}]", self.place(key)), item)?;
+                }
+                Ok(())
+            }
+            Some(value) if value.is_boolean() => {
+                into.fill(flag(&self.place(key), value)?);
+                Ok(())
+            }
+            Some(other) => {
+                let expected = format!("true, false or a list of {} of them", into.len());
+                Err(Mistake::value(&self.place(key), other, &expected))
+            }
+        }
+    }
+
     /// Fills `into` from a text for all or a list of one for each; nothing happens if it is missing.
     pub(crate) fn choices<T: Copy>(
         &self,

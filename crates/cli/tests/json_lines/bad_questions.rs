@@ -105,7 +105,7 @@ fn otg_names_what_where_and_what_was_expected() {
         (
             "\"velocity_max\"",
             "\"velocity\"",
-            "limits.velocity: unknown, expected one of velocity_max, velocity_min, acceleration_max, acceleration_min, jerk_max",
+            "limits.velocity: unknown, expected one of velocity_max, velocity_min, acceleration_max, acceleration_min, jerk_max, position_max, position_min",
         ),
         (
             "[9,9]",

@@ -297,3 +297,43 @@ fn every_subcommand_helps_with_an_example() {
         assert!(text.contains("Example:") && text.contains(&format!("seamline {name}")), "{text}");
     }
 }
+
+/// What the questions of SPEC 11 leave to the library, asked here too: position limits, axes that are not planned, steps of the duration, targets
+/// that move on.
+#[test]
+fn limits_of_position_axes_left_out_steps_and_moving_targets() {
+    let question = |more: &str| {
+        let text = format!(
+            r#"{{"current": {{"position": [0, 5], "velocity": [0.5, 0]}}, "target": {{"position": [1, null]}},
+            "limits": {{"velocity_max": [1, 1], "acceleration_max": [2, 2], "position_max": [1.2, null]}},
+            "enabled": [true, false], "sample": [1]{more}}}"#
+        )
+        .replace('\n', " ");
+        answer(&["otg"], &text)
+    };
+    let plain = question("");
+    let duration = plain["duration"].as_f64().unwrap();
+    assert_eq!(plain["samples"][0]["position"], json!([1.0, 5.0]), "{plain}");
+    let stepped = question(r#", "duration_step": 0.5"#)["duration"].as_f64().unwrap();
+    assert_eq!(stepped, 0.5 * (duration / 0.5).ceil());
+    // The target runs away at half the highest speed: the axis meets it where it is then.
+    let mut moving: Value = serde_json::from_str(REST).unwrap();
+    moving["target"]["velocity"] = json!([0.5]);
+    moving["target_moves"] = json!(true);
+    moving["sample"] = json!([1]);
+    let met = answer(&["otg"], &moving.to_string());
+    let at = met["duration"].as_f64().unwrap();
+    let position = met["samples"][0]["position"][0].as_f64().unwrap();
+    assert!((position - (1.0 + 0.5 * at)).abs() <= 1e-12, "{met}");
+    // Too fast to stop in front of the position limit.
+    let mut beyond: Value = serde_json::from_str(REST).unwrap();
+    beyond["current"]["velocity"] = json!([1]);
+    beyond["target"]["position"] = json!([0.1]);
+    beyond["limits"]["position_max"] = json!([0.2]);
+    let refused = answer(&["otg"], &beyond.to_string());
+    let error = refused["error"].as_str().unwrap();
+    assert!(
+        error.contains("would reach position 0.34666") && error.contains("beyond the limit 0.2"),
+        "{error}"
+    );
+}

@@ -13,13 +13,18 @@ const HELP: &str = "\
 Each line is one question of 1 to 16 axes:
   {\"id\": any, \"control\": C, \"synchronization\": S, \"current\": STATE, \"target\": STATE,
    \"limits\": {\"velocity_max\": [..], \"velocity_min\": [..], \"acceleration_max\": [..],
-   \"acceleration_min\": [..], \"jerk_max\": [..]}, \"duration_min\": s, \"sample\": [0..1, ..],
+   \"acceleration_min\": [..], \"jerk_max\": [..], \"position_max\": [..], \"position_min\": [..]},
+   \"enabled\": B, \"target_moves\": B, \"duration_min\": s, \"duration_step\": s, \"sample\": [0..1, ..],
    \"profiles\": true}
 C      \"position\" (default) or \"velocity\", for all axes or as a list
 S      \"none\", \"time\" (default), \"time_if_necessary\", \"phase\" or \"phase_strict\", likewise
+B      true or false, likewise: axes that are not enabled (default true) go on as they are; a target that
+       moves (default false) goes on at its velocity from now on, and is met where it will be
 STATE  {\"position\": [..], \"velocity\": [..], \"acceleration\": [..]}; what is missing is 0, except
        positions; a target position does not matter in velocity control
-A limit that is null or missing is infinite, a minimum that is missing the negated maximum.
+A limit that is null or missing is infinite, a minimum that is missing the negated maximum. A motion
+that would leave the position limits has no answer: the error says where and when. The duration is at
+least duration_min, and a whole number of duration_step.
 Any unit of length or angle; seconds.
 
 The answer, on one line:

@@ -7,11 +7,30 @@ use crate::json_lines::{Mistake, Numbers, Object};
 /// Most axes of a question.
 pub(super) const AXES_MAX: usize = 16;
 
-const KEYS: [&str; 9] =
-    ["id", "control", "synchronization", "current", "target", "limits", "duration_min", "sample", "profiles"];
+const KEYS: [&str; 12] = [
+    "id",
+    "control",
+    "synchronization",
+    "enabled",
+    "current",
+    "target",
+    "target_moves",
+    "limits",
+    "duration_min",
+    "duration_step",
+    "sample",
+    "profiles",
+];
 const STATE_KEYS: [&str; 3] = ["position", "velocity", "acceleration"];
-const LIMIT_KEYS: [&str; 5] =
-    ["velocity_max", "velocity_min", "acceleration_max", "acceleration_min", "jerk_max"];
+const LIMIT_KEYS: [&str; 7] = [
+    "velocity_max",
+    "velocity_min",
+    "acceleration_max",
+    "acceleration_min",
+    "jerk_max",
+    "position_max",
+    "position_min",
+];
 
 const CONTROLS: [(&str, Control); 2] = [("position", Control::Position), ("velocity", Control::Velocity)];
 const SYNCHRONIZATIONS: [(&str, Synchronization); 5] = [
@@ -38,6 +57,8 @@ const LOWER: Numbers = Numbers {
     expected: "a number of 0 or less, or null for no limit",
     ..Numbers::ANY
 };
+const HIGHEST: Numbers = Numbers { null: Some(f64::INFINITY), ..Numbers::ANY };
+const LOWEST: Numbers = Numbers { null: Some(f64::NEG_INFINITY), ..Numbers::ANY };
 const SECONDS: Numbers = Numbers { min: 0.0, expected: "seconds, 0 or more", ..Numbers::ANY };
 const FRACTION: Numbers = Numbers { min: 0.0, max: 1.0, expected: "a number from 0 to 1", ..Numbers::ANY };
 
@@ -77,8 +98,11 @@ impl<const N: usize> Request<N> {
             current.fill("velocity", &Numbers::ANY, &mut input.current.velocity)?;
             current.fill("acceleration", &Numbers::ANY, &mut input.current.acceleration)?;
         }
-        input.target = target(line, &input.control)?;
+        line.flags("enabled", &mut input.enabled)?;
+        line.flags("target_moves", &mut input.target_moves)?;
+        input.target = target(line, &input)?;
         input.duration_min = line.number("duration_min", &SECONDS)?;
+        input.duration_step = line.number("duration_step", &SECONDS)?;
         Ok(Self {
             input,
             sample: line.numbers("sample", &FRACTION)?.unwrap_or_default(),
@@ -91,16 +115,16 @@ fn state<'a>(line: &Object<'a>, key: &'static str) -> Result<Option<Object<'a>>,
     line.object(key, &STATE_KEYS)
 }
 
-/// The target; axes in velocity control need no position.
-fn target<const N: usize>(line: &Object<'_>, control: &[Control; N]) -> Result<State<N>, Mistake> {
+/// The target; axes in velocity control need no position, and those that are not planned nothing.
+fn target<const N: usize>(line: &Object<'_>, input: &Input<N>) -> Result<State<N>, Mistake> {
     let mut target = State::at_rest([f64::NAN; N]);
     if let Some(given) = state(line, "target")? {
         given.fill("position", &NAN_IF_NULL, &mut target.position)?;
         given.fill("velocity", &ZERO_IF_NULL, &mut target.velocity)?;
         given.fill("acceleration", &ZERO_IF_NULL, &mut target.acceleration)?;
     }
-    for (axis, (position, control)) in target.position.iter_mut().zip(control).enumerate() {
-        if *control == Control::Velocity {
+    for (axis, position) in target.position.iter_mut().enumerate() {
+        if input.control[axis] == Control::Velocity || !input.enabled[axis] {
             *position = 0.0;
         } else if position.is_nan() {
             let expected = "a number (only axes in velocity control need none)";
@@ -121,5 +145,7 @@ fn limits<const N: usize>(line: &Object<'_>) -> Result<Limits<N>, Mistake> {
     limits.acceleration_min = limits.acceleration_max.map(|a| -a);
     given.fill("velocity_min", &LOWER, &mut limits.velocity_min)?;
     given.fill("acceleration_min", &LOWER, &mut limits.acceleration_min)?;
+    given.fill("position_max", &HIGHEST, &mut limits.position_max)?;
+    given.fill("position_min", &LOWEST, &mut limits.position_min)?;
     Ok(limits)
 }
