@@ -290,7 +290,7 @@ fn bad_input_is_named() {
     assert_eq!(error(&|i| i.limits.jerk_max[1] = 0.0), Error::Unreachable { axis: 1 });
 }
 
-/// 200,000 inputs made of the extremes of 64-bit floats: an answer without NaN or an error, never a panic.
+/// 200,000 inputs made of the extremes of 64-bit floats: a finite answer or an error, never a panic.
 #[test]
 fn extreme_numbers() {
     let values = [
@@ -338,9 +338,72 @@ fn extreme_numbers() {
             for share in [0.0, 0.3, 1.0] {
                 let at = trajectory.at_time(share * trajectory.duration());
                 let all = at.position.iter().chain(&at.velocity).chain(&at.acceleration);
-                assert!(all.clone().all(|x| !x.is_nan()), "{share} {at:?}\n{input:?}");
+                assert!(all.clone().all(|x| x.is_finite()), "{share} {at:?}\n{input:?}");
             }
         }
     }
     assert!(answers > 10_000, "{answers}");
+}
+
+/// A number of up to 10^±span; half of the signed ones are negative.
+fn magnitude(random: &mut Random, span: f64, signed: bool) -> f64 {
+    let size = 10.0_f64.powf(random.uniform(-span, span));
+    if signed && random.chance(0.5) { -size } else { size }
+}
+
+/// A target that the limits allow, and everything else of any size.
+fn any_size(random: &mut Random, span: f64) -> Input<2> {
+    let mut row =
+        |signed: bool| -> [f64; 2] {
+            std::array::from_fn(|_| {
+                if signed && random.chance(0.3) { 0.0 } else { magnitude(random, span, signed) }
+            })
+        };
+    let mut state = || State { position: row(true), velocity: row(true), acceleration: row(true) };
+    let (current, mut target) = (state(), state());
+    let limits = Limits::symmetric(row(false), row(false), row(false));
+    for axis in 0..2 {
+        let (v, a) = (limits.velocity_max[axis], limits.acceleration_max[axis]);
+        let held = target.acceleration[axis].clamp(-a, a);
+        let room = v - 0.5 * (held * (held / limits.jerk_max[axis])).abs();
+        target.acceleration[axis] = if room > 0.0 { held } else { 0.0 };
+        let room = if room > 0.0 { room } else { v };
+        target.velocity[axis] = target.velocity[axis].clamp(-room, room);
+    }
+    let mut input = Input::new(current, target, limits);
+    input.synchronization = [[Synchronization::None, Synchronization::Time, Synchronization::Phase]
+        [(random.bits() % 3) as usize]; 2];
+    if random.chance(0.2) {
+        input.control = [Control::Velocity; 2];
+    }
+    input
+}
+
+/// 3 × 200,000 inputs whose numbers span 1e±20, 1e±100 and 1e±150: an answer whose samples are all finite or an error that says what is out of
+/// range; up to 1e±20 all but one in a thousand have an answer.
+#[test]
+fn numbers_of_any_size() {
+    for (span, least) in [(20.0, 199_800), (100.0, 120_000), (150.0, 80_000)] {
+        let mut random = Random(19);
+        let mut answers = 0;
+        for _ in 0..200_000 {
+            let input = any_size(&mut random, span);
+            match calculate(&input) {
+                Ok(trajectory) => {
+                    answers += 1;
+                    for share in [0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0] {
+                        let at = trajectory.at_time(share * trajectory.duration());
+                        let mut all = at.position.iter().chain(&at.velocity).chain(&at.acceleration);
+                        assert!(all.all(|x| x.is_finite()), "{share} {at:?}\n{input:?}");
+                    }
+                }
+                Err(Error::OutOfRange { axis, quantity, value }) => {
+                    // The number named is the axis' own, and an extreme one.
+                    assert!(axis < 2 && value.abs().log10().abs() > 5.0, "{quantity} {value}\n{input:?}");
+                }
+                Err(other) => panic!("{other}\n{input:?}"),
+            }
+        }
+        assert!(answers >= least, "1e±{span}: {answers}");
+    }
 }

@@ -58,6 +58,7 @@ fuzz_target!(|data: &[u8]| {
         std::array::from_fn(
             |i| if modes >> (2 + i) & 1 != 0 { Control::Velocity } else { Control::Position },
         );
+    input.target_moves = [flags & 32 != 0; N];
     if flags & 8 != 0 {
         input.duration_min = Some(row()[0].abs());
     }

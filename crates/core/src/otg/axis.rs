@@ -58,6 +58,12 @@ impl AxisInput {
         }
     }
 
+    /// Whether a limit leaves the axis no way in some direction.
+    pub(super) fn has_zero_limit(&self) -> bool {
+        let Self { v_max, v_min, a_max, a_min, jerk, .. } = *self;
+        [v_max, v_min, a_max, a_min, jerk].contains(&0.0)
+    }
+
     /// Whether the axis starts and ends at rest.
     fn is_rest_to_rest(&self) -> bool {
         let Self { current, target, .. } = self;
@@ -333,9 +339,9 @@ impl Axis {
         }
     }
 
-    /// Adds the motion of a solution to the profile.
-    pub(super) fn write(&self, solution: &Solution, axis: usize, profile: &mut Profile) -> Result<(), Error> {
-        let joined = match (&self.motion, solution) {
+    /// Adds the motion of a solution to the profile. False if the numbers have overflowed.
+    pub(super) fn write(&self, solution: &Solution, profile: &mut Profile) -> bool {
+        match (&self.motion, solution) {
             (Motion::Third(problem, _), Solution::Earliest(arrival)) => {
                 self.draft(profile).arrival(problem.a0, problem.af, arrival)
             }
@@ -363,8 +369,7 @@ impl Axis {
                 profile.begin(profile.target(), profile.order());
                 true
             }
-        };
-        if joined { Ok(()) } else { Err(Error::OutOfRange { axis }) }
+        }
     }
 
     fn draft<'a>(&self, profile: &'a mut Profile) -> Draft<'a> {

@@ -126,6 +126,10 @@ pub enum Error {
     OutOfRange {
         /// Axis.
         axis: usize,
+        /// What is farthest from one, by the number of digits.
+        quantity: Quantity,
+        /// Its value.
+        value: f64,
     },
 }
 
@@ -157,8 +161,11 @@ impl fmt::Display for Error {
                     "axis {axis}: would reach position {position} at {time} s, beyond the limit {limit}"
                 )
             }
-            Self::OutOfRange { axis } => {
-                write!(f, "axis {axis}: the solution is beyond the range of 64-bit floats")
+            Self::OutOfRange { axis, quantity, value } => {
+                write!(
+                    f,
+                    "axis {axis}: the solution is beyond the range of 64-bit floats; its {quantity} is {value}"
+                )
             }
         }
     }

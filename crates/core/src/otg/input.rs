@@ -104,7 +104,7 @@ pub struct Input<const N: usize> {
     pub target: State<N>,
     /// Whether the target goes on at its velocity from now on, so that the axis has to meet it where it will be then. For targets
     /// that move and are sent anew on every cycle: the plan then stays the same as long as the target keeps its velocity. In velocity
-    /// control it does not matter. See `docs/otg.md`, section 11.
+    /// control it does not matter. See `docs/otg.md`, section 13.
     pub target_moves: [bool; N],
     /// The limits.
     pub limits: Limits<N>,

@@ -50,7 +50,8 @@ pub use trajectory::{Sample, Trajectory};
 use axis::{Axis, AxisInput};
 use line::Line;
 use number::larger;
-use synchronize::{Demand, Plan, common_duration};
+use synchronize::{Demand, Never, Plan, common_duration};
+use validate::out_of_range;
 
 /// Plans the motion from the current to the target state.
 ///
@@ -97,26 +98,33 @@ pub fn calculate_into<const N: usize>(input: &Input<N>, trajectory: &mut Traject
         if matches!(groups.roles[axis], Role::Off | Role::Follower) {
             profile.begin(own.current, Order::Third);
         } else {
-            axes[axis].set(problem, axis, profile)?;
+            let set = axes[axis].set(problem, axis, profile);
+            set.map_err(|error| match error {
+                Error::Unreachable { axis } => unreachable(input, &groups, axis),
+                other => other,
+            })?;
             plans[axis].find_earliest(&axes[axis]);
         }
         trajectory.duration_min[axis] = plans[axis].earliest;
     }
 
     let demand = Demand { min: input.duration_min.unwrap_or(0.0), step: input.duration_step.unwrap_or(0.0) };
-    trajectory.duration = common_duration(&axes, &mut plans, &groups.roles, &demand)?;
+    let never = |Never { axis }: Never| unreachable(input, &groups, axis);
+    trajectory.duration = common_duration(&axes, &mut plans, &groups.roles, &demand).map_err(never)?;
     for axis in 0..N {
         match groups.roles[axis] {
             Role::Off | Role::Follower => continue,
             Role::Alone => {
                 let only =
                     core::array::from_fn(|other| if other == axis { Role::Together } else { Role::Off });
-                let duration = common_duration(&axes, &mut plans, &only, &demand)?;
+                let duration = common_duration(&axes, &mut plans, &only, &demand).map_err(never)?;
                 trajectory.duration = larger(duration, trajectory.duration);
             }
             Role::Early | Role::Together => {}
         }
-        axes[axis].write(&plans[axis].solution, axis, &mut trajectory.profiles[axis])?;
+        if !axes[axis].write(&plans[axis].solution, &mut trajectory.profiles[axis]) {
+            return Err(out_of_range(input, axis));
+        }
     }
     if let Some(line) = &groups.line {
         spread(input, line, trajectory)?;
@@ -124,7 +132,28 @@ pub fn calculate_into<const N: usize>(input: &Input<N>, trajectory: &mut Traject
     for axis in (0..N).filter(|&axis| input.target_moves[axis] && groups.roles[axis] != Role::Off) {
         trajectory.profiles[axis].carry(AxisInput::of(input, axis).drift);
     }
+    // An axis that arrives long before the others goes on, and so may its numbers.
+    let duration = trajectory.duration;
+    let overflows = |axis: &usize| {
+        let profile = &trajectory.profiles[*axis];
+        profile.duration() < duration && !profile.after_end(duration).position.is_finite()
+    };
+    if let Some(axis) = (0..N).filter(|&axis| groups.roles[axis] != Role::Off).find(overflows) {
+        return Err(out_of_range(input, axis));
+    }
     trajectory.check_positions(input)
+}
+
+/// Why an axis, or one of the line that it leads, does not arrive: a limit is zero, or has become so beside the other numbers.
+#[cold]
+fn unreachable<const N: usize>(input: &Input<N>, groups: &Groups<N>, axis: usize) -> Error {
+    let leads = groups.line.as_ref().is_some_and(|line| line.reference == axis);
+    let concerned = |other: &usize| *other == axis || (leads && groups.roles[*other] == Role::Follower);
+    let zero = |other: &usize| AxisInput::of(input, *other).has_zero_limit();
+    match (0..N).filter(concerned).find(zero) {
+        Some(axis) => Error::Unreachable { axis },
+        None => out_of_range(input, axis),
+    }
 }
 
 /// Gives the axes of a line their shares of the motion along it.
@@ -140,7 +169,7 @@ fn spread<const N: usize>(
         let profile = &mut trajectory.profiles[axis];
         *profile = scalar.along(current, target, control, line.direction[axis]);
         if !profile.is_finite() {
-            return Err(Error::OutOfRange { axis });
+            return Err(out_of_range(input, axis));
         }
         trajectory.duration_min[axis] = duration_min;
     }

@@ -2,7 +2,6 @@
 
 use super::Role;
 use super::axis::{Axis, Solution};
-use super::error::Error;
 use super::number::larger;
 use crate::math::float::ceil;
 
@@ -20,6 +19,12 @@ pub(super) struct Demand {
     pub(super) min: f64,
     /// Zero if any duration will do.
     pub(super) step: f64,
+}
+
+/// There is no common duration: this axis does not arrive.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Never {
+    pub(super) axis: usize,
 }
 
 /// Durations that differ by this fraction are the same number of steps: a few roundings.
@@ -89,7 +94,7 @@ pub(super) fn common_duration<const N: usize>(
     plans: &mut [Plan; N],
     roles: &[Role; N],
     demand: &Demand,
-) -> Result<f64, Error> {
+) -> Result<f64, Never> {
     let (mut t, mut last) = latest(plans, roles);
     let mut hurried = [false; N];
     for _ in 0..4 * N + 3 {
@@ -116,7 +121,7 @@ pub(super) fn common_duration<const N: usize>(
         }
         (t, last) = (plans[late].arrive_after(&axes[late], t), late);
     }
-    Err(if t.is_nan() { Error::OutOfRange { axis: last } } else { Error::Unreachable { axis: last } })
+    Err(Never { axis: last })
 }
 
 /// The largest of the least durations, and whose it is.

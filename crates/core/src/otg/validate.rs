@@ -50,6 +50,35 @@ fn is_plain<const N: usize>(input: &Input<N>, axis: usize) -> bool {
     sum.is_finite() & signs & acceleration & (velocity | (input.control[axis] == Control::Velocity))
 }
 
+/// The error of an axis whose numbers 64-bit floats do not hold: it names the one that is farthest from one.
+#[cold]
+pub(super) fn out_of_range<const N: usize>(input: &Input<N>, axis: usize) -> Error {
+    let Input { current, target, limits: l, .. } = input;
+    let numbers = [
+        (Quantity::CurrentPosition, current.position[axis]),
+        (Quantity::CurrentVelocity, current.velocity[axis]),
+        (Quantity::CurrentAcceleration, current.acceleration[axis]),
+        (Quantity::TargetPosition, target.position[axis]),
+        (Quantity::TargetVelocity, target.velocity[axis]),
+        (Quantity::TargetAcceleration, target.acceleration[axis]),
+        (Quantity::VelocityMax, l.velocity_max[axis]),
+        (Quantity::VelocityMin, l.velocity_min[axis]),
+        (Quantity::AccelerationMax, l.acceleration_max[axis]),
+        (Quantity::AccelerationMin, l.acceleration_min[axis]),
+        (Quantity::JerkMax, l.jerk_max[axis]),
+    ];
+    let mut farthest = (Quantity::CurrentPosition, current.position[axis]);
+    let mut most = 0.0;
+    for (quantity, value) in numbers {
+        let size = larger(value.abs(), 1.0 / value.abs());
+        if size.is_finite() && size > most {
+            (most, farthest) = (size, (quantity, value));
+        }
+    }
+    let (quantity, value) = farthest;
+    Error::OutOfRange { axis, quantity, value }
+}
+
 fn states<const N: usize>(input: &Input<N>, axis: usize) -> Result<(), Error> {
     let (current, target) = (&input.current, &input.target);
     let position_counts = input.control[axis] == Control::Position;

@@ -71,14 +71,10 @@ struct Motion {
 }
 
 impl Motion {
-    /// On by a time at constant jerk: the definition.
+    /// On by a time at constant jerk: the definition (p + v t + a t²/2 + j t³/6, in the form in which t³ alone does not overflow).
     fn on(self, t: f64, j: f64) -> Self {
         let Motion { p, v, a } = self;
-        Motion {
-            p: p + v * t + a * t * t / 2.0 + j * t * t * t / 6.0,
-            v: v + a * t + j * t * t / 2.0,
-            a: a + j * t,
-        }
+        Motion { p: p + t * (v + t * (a / 2.0 + t * j / 6.0)), v: v + t * (a + t * j / 2.0), a: a + j * t }
     }
 
     fn of(phase: &Phase) -> Self {
@@ -234,5 +230,15 @@ pub fn is_smooth<const N: usize>(input: &Input<N>, before: &State<N>, after: &St
                 // Both ends count: they are what a displacement is rounded by.
                 p.abs() + input.target.position[axis].abs() + size_v * cycle,
             )
+    })
+}
+
+/// Velocity and acceleration within their limits to 1e-12 of these.
+pub fn is_within_limits<const N: usize>(input: &Input<N>, state: &State<N>) -> bool {
+    let l = &input.limits;
+    let within = |x: f64, min: f64, max: f64| min * (1.0 + 1e-12) <= x && x <= max * (1.0 + 1e-12);
+    (0..N).all(|axis| {
+        within(state.velocity[axis], l.velocity_min[axis], l.velocity_max[axis])
+            && within(state.acceleration[axis], l.acceleration_min[axis], l.acceleration_max[axis])
     })
 }
