@@ -407,3 +407,29 @@ fn numbers_of_any_size() {
         assert!(answers >= least, "1e±{span}: {answers}");
     }
 }
+
+/// Problems that sweeps and fuzzing have found. One: the displacement rises throughout, but so little in between that Newton's method leads from
+/// there to the start of the bracket and back. Two: beside another axis, the start of the main arc beyond the turn of a brake is no way round the brake.
+#[test]
+fn found_once() {
+    let current = State {
+        position: [-1.7388394384432249],
+        velocity: [16.644254872131725],
+        acceleration: [-5.074612831277814],
+    };
+    let target = State {
+        position: [-2.294092610390382],
+        velocity: [-8.591695179555726],
+        acceleration: [2.0586504317503636],
+    };
+    let limits = Limits::symmetric([10.883142476128496], [7.970710804394044], [3.0663020957418663]);
+    let one = Input::new(current, target, limits);
+    assert!(judge(&one, &calculate(&one).unwrap(), true).is_good());
+
+    let state = State { position: [12.25; 2], velocity: [12.25; 2], acceleration: [12.25; 2] };
+    let mut limits = Limits::symmetric([16.0, 12.25], [12.25; 2], [12.25; 2]);
+    limits.velocity_min[0] = -12.25;
+    let mut two = Input::new(state, state, limits);
+    (two.target_moves, two.duration_min) = ([true; 2], Some(0.25));
+    assert!(judge(&two, &calculate(&two).unwrap(), true).is_good());
+}

@@ -434,6 +434,7 @@ impl Family {
     /// for humps and rounding.
     fn solve(&self, p: f64, mut low: f64, mut high: f64, start: f64) -> Extremal {
         let mut now = self.at(larger(start, low));
+        let mut low_is_tried = false;
         for _ in 0..MAX_STEPS {
             let excess = now.p - p;
             if excess.abs() <= ROUNDING * p.abs() {
@@ -442,13 +443,14 @@ impl Family {
             if excess > 0.0 {
                 high = now.e;
             } else {
-                low = now.e;
+                (low, low_is_tried) = (now.e, true);
             }
             // dp/de = slope · dt/de, and dt/de = 2 (1 + n/x).
             let step = excess * now.x / (2.0 * now.slope * (now.x + now.n));
-            // Near the bracket's start rounding may lead before it; the root may be the start itself.
+            // Near the bracket's start rounding may lead before it; the root may be the start itself. Once that is known not to be so, the step
+            // has come from where the displacement is not convex.
             let mut next = now.e - step;
-            if next < low && now.e > low {
+            if next < low && now.e > low && !low_is_tried {
                 next = low;
             }
             let inside = next >= low && next <= high;

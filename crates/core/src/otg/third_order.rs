@@ -138,16 +138,28 @@ impl ThirdOrder {
 
     /// As [`Self::at`], before the times that are possible for good.
     pub(super) fn at_on_island(&self, t: f64) -> Option<Passage> {
-        if t < self.start.t { self.at(t) } else { None }
+        if t >= self.start.t {
+            return None;
+        }
+        let families = self.families();
+        match families.on_island(t) {
+            Some(true) => self.between_extremes(&families, t, true),
+            Some(false) => None,
+            None => self.near_ends_at(&families, t, false).map(Passage::Extreme),
+        }
     }
 
     /// The motion that arrives after the time `t`, if it is a possible one: between the two extreme ones, or one of them.
     pub(super) fn at(&self, t: f64) -> Option<Passage> {
-        let p = self.problem.displacement;
         let families = self.families();
-        let Some(on_island) = families.on_island(t) else {
-            return self.near_ends_at(&families, t).map(Passage::Extreme);
-        };
+        match families.on_island(t) {
+            Some(on_island) => self.between_extremes(&families, t, on_island),
+            None => self.near_ends_at(&families, t, true).map(Passage::Extreme),
+        }
+    }
+
+    fn between_extremes(&self, families: &Families, t: f64, on_island: bool) -> Option<Passage> {
+        let p = self.problem.displacement;
         let span = families.span(t, on_island);
         let Span { up, down } = span;
         if p <= up.p && -p <= down.p {
@@ -160,15 +172,15 @@ impl ThirdOrder {
         close.then(|| Passage::Extreme(families.nearest(p, &span)))
     }
 
-    /// The motion at the start of the main arc or an end of the island that takes the time `t` and leads to the target but for rounding.
+    /// The motion at an end of the island, or at the start of the main arc, that takes the time `t` and leads to the target but for rounding.
     #[cold]
-    fn near_ends_at(&self, families: &Families, t: f64) -> Option<Arrival> {
+    fn near_ends_at(&self, families: &Families, t: f64, with_main_arc: bool) -> Option<Arrival> {
         let (p, noise, resolution) = (self.problem.displacement, self.rounding, 16.0 * self.resolution(t));
         let near = |sign: f64| {
             let family = if sign > 0.0 { &families.up } else { &families.down };
             let leads = |moved: &Extremal| (moved.p - sign * p).abs() <= resolution;
             let start = family.at_start();
-            let start = family.moved_start(&start, t - start.t, noise);
+            let start = if with_main_arc { family.moved_start(&start, t - start.t, noise) } else { None };
             let island = || family.moved_island(|end| t - end.t, noise);
             let found = start.filter(leads).or_else(|| island().filter(leads))?;
             Some(Arrival::moved(family, &found, sign))
