@@ -4,6 +4,7 @@ use seamline::path::Path;
 use seamline::path::corner::{Blend, Corner, CornerZone, MustStop};
 
 use super::run::Stops;
+use super::speed::on_bends;
 use super::timing::PathLimits;
 
 /// A zone reaches from its point as far as the faster move goes in this time, in seconds, but within these multiples of the permitted
@@ -40,13 +41,12 @@ pub(super) fn passing(
     }
 }
 
-/// The gentler limits of both neighbours, and no more acceleration across the path than along it.
+/// The gentler limits of both neighbours, and no more acceleration and jerk across the path than along it.
 pub(super) fn limits(blend: &Blend, before: &PathLimits, after: &PathLimits) -> PathLimits {
     let acceleration = before.acceleration.min(after.acceleration);
+    let limits =
+        PathLimits { speed: before.speed.min(after.speed), acceleration, jerk: before.jerk.min(after.jerk) };
+    // Between two looks a sharp tip may bend more.
     let across = (acceleration / blend.greatest_curvature).sqrt();
-    PathLimits {
-        speed: before.speed.min(after.speed).min(across),
-        acceleration,
-        jerk: before.jerk.min(after.jerk),
-    }
+    PathLimits { speed: limits.speed.min(across).min(on_bends(&blend.path, &limits)), ..limits }
 }

@@ -9,6 +9,7 @@ use super::route::Route;
 use super::run::Piece;
 use super::suggest::Trouble;
 use super::timing::{Order, Slowdown, Timing, TimingKind};
+use crate::record::SegmentKind;
 
 /// A run that is stretched by more than this is refused.
 const STRETCH_MAX: f64 = 50.0;
@@ -121,7 +122,12 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             self.arm.joint_names[slowdown.joint],
         );
         if slowdown.sustainable < speed {
-            text += &remedy(path, slowdown, &self.trouble(piece));
+            let held = slowdown.sustainable * factor;
+            text += &format!("; {held:.1} {speed_unit} could be held all along");
+            // A corner is the same in any configuration.
+            if matches!(piece.info.kind, SegmentKind::Path(_)) {
+                text += &self.trouble(piece).remedy();
+            }
         }
         if self.refuses_slowdown(piece, slowdown.speed) {
             return Err(Problem::WeldSlowdown(text));
@@ -144,22 +150,10 @@ pub(super) fn path_problem<const N: usize, K: PlanningArm<N>>(
     reason: &str,
     trouble: &Trouble<'_, N, K>,
 ) -> Problem {
-    let remedy = trouble.suggestion().map_or_else(String::new, |suggestion| format!("; {suggestion}"));
+    let remedy = trouble.remedy();
     let (unit, _, factor) = units(path);
     let place = Place { at: s.clamp(0.0, path.length()) * factor, of: path.length() * factor, unit };
     Problem::Path { place, reason: format!("{reason}{remedy}") }
-}
-
-/// What would keep the speed constant.
-fn remedy<const N: usize, K: PlanningArm<N>>(
-    path: &Path,
-    slowdown: &Slowdown,
-    trouble: &Trouble<'_, N, K>,
-) -> String {
-    let (_, speed_unit, factor) = units(path);
-    let held = slowdown.sustainable * factor;
-    let or = trouble.suggestion().map_or_else(String::new, |suggestion| format!("; {suggestion}"));
-    format!("; {held:.1} {speed_unit} could be held all along{or}")
 }
 
 /// Unit of length, unit of speed, and the factor from SI to them.

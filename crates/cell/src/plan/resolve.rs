@@ -8,6 +8,9 @@ use super::error::Problem;
 use crate::cell::Cell;
 use crate::job::{Coordinates, Frame, Rectangular, Target, joints_from_pulses};
 
+/// Values that a robot's position has as a rule.
+const SIX: usize = 6;
+
 /// A tool of the cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ToolPose {
@@ -94,8 +97,12 @@ pub(super) fn pulse_increment<const N: usize, K>(
 }
 
 fn joints_of<const N: usize, K>(pulses: &[i32], arm: &Arm<N, K>, name: &str) -> Result<[f64; N], Problem> {
-    let short = || Problem::PositionLength { name: name.into(), found: pulses.len(), expected: N };
-    joints_from_pulses(pulses, &arm.pulses_per_unit).ok_or_else(short)
+    let length = || Problem::PositionLength { name: name.into(), found: pulses.len(), expected: N };
+    // Behind a six-axis arm's values may stand those of other axes; behind fewer there is nothing but filling.
+    if N < SIX && pulses.iter().skip(N).any(|&pulses| pulses != 0) {
+        return Err(length());
+    }
+    joints_from_pulses(pulses, &arm.pulses_per_unit).ok_or_else(length)
 }
 
 fn base_from_frame(position: &Rectangular, cell: &Cell, name: &str) -> Result<Pose, Problem> {

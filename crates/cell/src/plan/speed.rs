@@ -1,5 +1,6 @@
 //! The limits of a move along its path, from the move's speed and the cell's limits.
 
+use seamline::geometry::Vector3;
 use seamline::path::{Measure, Path};
 
 use super::error::Problem;
@@ -11,6 +12,20 @@ use crate::job::{Move, Speed};
 /// time. So the acceleration is at most what gains the programmed speed in `GAIN`, and builds up in `BUILD_UP` (seconds).
 const GAIN: f64 = 0.02;
 const BUILD_UP: f64 = 0.01;
+
+/// Places at which the bends of a path are looked at.
+const LOOKS: u32 = 8;
+
+/// The highest speed at which the tool has no more acceleration and jerk on the path's bends than the limits permit along it.
+pub(super) fn on_bends(path: &Path, limits: &PathLimits) -> f64 {
+    let at = |look: u32| path.jet(path.length() * f64::from(look) / f64::from(LOOKS)).linear;
+    let of = |most: [f64; 2], [_, second, third]: [Vector3; 3]| {
+        [most[0].max(second.norm_squared()), most[1].max(third.norm_squared())]
+    };
+    let [second, third] = (0..=LOOKS).map(at).fold([0.0; 2], of).map(f64::sqrt);
+    // Without bends both are infinite.
+    (limits.acceleration / second).sqrt().min((limits.jerk / third).cbrt())
+}
 
 /// The tag that a speed is written with.
 pub(super) fn tag(speed: &Speed) -> &'static str {

@@ -30,6 +30,11 @@ impl<const N: usize, K: PlanningArm<N>> Trouble<'_, N, K> {
         self.tilt().or_else(|| self.configuration())
     }
 
+    /// The suggestion as the end of a sentence; empty where there is none.
+    pub(super) fn remedy(&self) -> String {
+        self.suggestion().map_or_else(String::new, |suggestion| format!("; {suggestion}"))
+    }
+
     fn tilt(&self) -> Option<String> {
         let axes = [("x", Vector3::x()), ("y", Vector3::y())];
         for degrees in TILTS_DEG {
@@ -52,7 +57,9 @@ impl<const N: usize, K: PlanningArm<N>> Trouble<'_, N, K> {
     fn configuration(&self) -> Option<String> {
         let start = self.path.pose(0.0) * self.flange_from_tcp.inverse();
         let branches = self.kinematics.inverse_branches(&start, &self.start).ok()?;
-        let works = branches.as_slice().iter().find(|q| self.holds(&self.path, q))?;
+        let own = self.kinematics.configuration(&self.start);
+        let other = |q: &&[f64; N]| self.kinematics.configuration(q) != own;
+        let works = branches.as_slice().iter().filter(other).find(|q| self.holds(&self.path, q))?;
         let c = self.kinematics.configuration(works);
         let flags = [c.no_flip, c.lower_arm, c.rear, c.r_beyond_180, c.t_beyond_180, c.s_beyond_180];
         let digits: Vec<_> = flags.map(|flag| if flag { "1" } else { "0" }).into();

@@ -190,8 +190,8 @@ const OUTLINE: &[(&str, &str, &str)] = &[
     ),
     (
         "P00002=1000,2000,",
-        "P00002=",
-        "26:8: the position has 4 values, expected 6 (S, L, U, R, B, T), or up to 8 with further axes",
+        "P00002=1000,",
+        "26:8: the position has 5 values, expected 6 (S, L, U, R, B, T), up to 8 with further axes, or 4 on an arm of four axes",
     ),
     ("//INST\n", "", "31:1: the job has no //INST, expected it before the program"),
     (

@@ -12,6 +12,8 @@ use super::operand;
 
 type Parsed<T> = Result<T, Fault>;
 
+/// Values of a position of the smallest robot.
+const FOUR_AXES: usize = 4;
 /// Longest list of values on one header line.
 const MAX_VALUES: usize = 64;
 
@@ -290,7 +292,9 @@ fn pulses(lexer: &mut Lexer<'_>, robot: bool) -> Parsed<Vec<i32>> {
         // In range and whole: the cast is exact.
         if fits { Ok(value as i32) } else { Err(at.bad_number("a whole number of pulses")) }
     })?;
-    check_count(place, values.len(), "the position", if robot { 6..=8 } else { 1..=8 })?;
+    if !(robot && values.len() == FOUR_AXES) {
+        check_count(place, values.len(), "the position", if robot { 6..=8 } else { 1..=8 })?;
+    }
     Ok(values)
 }
 
@@ -316,7 +320,7 @@ fn check_count(
     }
     let expected = match (*count.start(), *count.end()) {
         (6, 7) => "6 (x, y, z, Rx, Ry, Rz), or 7 on an arm of seven axes",
-        (6, 8) => "6 (S, L, U, R, B, T), or up to 8 with further axes",
+        (6, 8) => "6 (S, L, U, R, B, T), up to 8 with further axes, or 4 on an arm of four axes",
         _ => "1 to 8",
     };
     Err(Fault { column, mistake: Mistake::WrongCount { what, found, unit: "values", expected } })
