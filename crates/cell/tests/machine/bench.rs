@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use seamline::control::{
-    Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, NoClock, PrefilterEntry,
-    ServoModel,
+    Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, Mode, NoClock,
+    PrefilterEntry, ServoModel,
 };
 use seamline::drive::Drive;
 use seamline::kinematics::SixAxisArm;
@@ -16,7 +16,7 @@ use seamline_cell::job::{
     Action, Coordinates, JobPosition, Location, Move, MovePath, PositionKind, PositionName, Speed,
     SpeedOrigin, Step, Target, Zone, pulses_from_joints,
 };
-use seamline_cell::plan::{Arm, Planner};
+use seamline_cell::plan::{Arm, PlanError, Planned, Planner, PlanningArm};
 use seamline_cell::run::joint_prefilter;
 use seamline_cell::sim::SimulatedDrive;
 
@@ -49,10 +49,10 @@ pub(crate) fn independent_torch() -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::new(-0.04383, 0.0, 0.45848), tilt)
 }
 
-pub(crate) struct Queue(pub(crate) VecDeque<Command<6>>);
+pub(crate) struct Queue<const N: usize>(pub(crate) VecDeque<Command<N>>);
 
-impl CommandSource<6> for Queue {
-    fn next(&mut self) -> Option<Command<6>> {
+impl<const N: usize> CommandSource<N> for Queue<N> {
+    fn next(&mut self) -> Option<Command<N>> {
         self.0.pop_front()
     }
 }
@@ -66,10 +66,21 @@ pub(crate) fn step(line: u32, action: Action) -> Step {
 }
 
 /// A move to joint positions, given in pulses as a robot saves them.
-pub(crate) fn move_to(line: u32, path: MovePath, speed: Speed, arm: &Ar2010, joints: &[f64; 6]) -> Step {
+pub(crate) fn move_to<const N: usize, K>(
+    line: u32,
+    path: MovePath,
+    speed: Speed,
+    arm: &Arm<N, K>,
+    joints: &[f64; N],
+) -> Step {
     let pulses = pulses_from_joints(joints, &arm.pulses_per_unit);
+    move_at(line, path, speed, Coordinates::Pulses(pulses))
+}
+
+/// A move to a position with tool 0, which ends at rest.
+pub(crate) fn move_at(line: u32, path: MovePath, speed: Speed, coordinates: Coordinates) -> Step {
     let name = PositionName { local: false, kind: PositionKind::C, number: line };
-    let position = JobPosition { coordinates: Coordinates::Pulses(pulses), tool: 0 };
+    let position = JobPosition { coordinates, tool: 0 };
     step(
         line,
         Action::Move(Box::new(Move {
@@ -85,7 +96,38 @@ pub(crate) fn move_to(line: u32, path: MovePath, speed: Speed, arm: &Ar2010, joi
     )
 }
 
-pub(crate) fn config(cell: &Cell, arm: &Ar2010) -> CycleConfig<6> {
+/// The step with another zone.
+pub(crate) fn with_zone(mut step: Step, zone: Zone) -> Step {
+    if let Action::Move(r#move) = &mut step.action {
+        r#move.zone = zone;
+    }
+    step
+}
+
+/// What the steps become, all planned ahead.
+pub(crate) fn planned<const N: usize, K: PlanningArm<N>>(
+    cell: &Cell,
+    arm: &Arm<N, K>,
+    steps: &[Step],
+) -> Result<Vec<Planned<N>>, PlanError> {
+    let mut planner = Planner::new(arm, cell, arm.home).unwrap();
+    let mut parts = Vec::new();
+    for step in steps {
+        planner.take(step, &mut parts)?;
+    }
+    planner.finish(&mut parts)?;
+    Ok(parts)
+}
+
+/// The commands of a whole run. As in a run of the program, a marker follows each part.
+pub(crate) fn commands<const N: usize>(parts: &[Planned<N>]) -> Vec<Command<N>> {
+    let mark = |(k, part): (usize, &Planned<N>)| {
+        part.commands.iter().copied().chain([Command::Marker(k as u32 + 1)]).collect::<Vec<_>>()
+    };
+    parts.iter().enumerate().flat_map(mark).chain([Command::End]).collect()
+}
+
+pub(crate) fn config<const N: usize, K: PlanningArm<N>>(cell: &Cell, arm: &Arm<N, K>) -> CycleConfig<N> {
     let planner = Planner::new(arm, cell, arm.home).unwrap();
     CycleConfig {
         period: cell.cycle.period,
@@ -94,7 +136,7 @@ pub(crate) fn config(cell: &Cell, arm: &Ar2010) -> CycleConfig<6> {
         flange_from_tcp: *planner.flange_from_tcp(),
         servo: ServoModel {
             lag: std::array::from_fn(|joint| cell.simulation.servo_lag[joint]),
-            feed_forward: [cell.simulation.velocity_feed_forward; 6],
+            feed_forward: [cell.simulation.velocity_feed_forward; N],
             following_error: arm.following_error,
         },
         overruns_in_row: 10,
@@ -102,29 +144,34 @@ pub(crate) fn config(cell: &Cell, arm: &Ar2010) -> CycleConfig<6> {
 }
 
 /// A controller with its simulated drives.
-pub(crate) struct Bench {
-    pub(crate) cycle: Cycle<6, SixAxisArm, Box<[PrefilterEntry<6>]>>,
-    pub(crate) drive: SimulatedDrive<6>,
-    pub(crate) queue: Queue,
-    pub(crate) input: CycleInput<6>,
+pub(crate) struct Bench<const N: usize = 6, K = SixAxisArm> {
+    pub(crate) cycle: Cycle<N, K, Box<[PrefilterEntry<N>]>>,
+    pub(crate) drive: SimulatedDrive<N>,
+    pub(crate) queue: Queue<N>,
+    pub(crate) input: CycleInput<N>,
     pub(crate) period: f64,
 }
 
-impl Bench {
-    pub(crate) fn new(cell: &Cell, arm: &Ar2010, commands: Vec<Command<6>>) -> Self {
-        Self::with_drive(cell, arm, SimulatedDrive::from_cell(cell).unwrap(), commands)
+impl<const N: usize, K: PlanningArm<N>> Bench<N, K> {
+    /// With the cell's drives, which stand where the arm does.
+    pub(crate) fn new(cell: &Cell, arm: &Arm<N, K>, commands: Vec<Command<N>>) -> Self {
+        let mut cell = cell.clone();
+        for (joint, home) in cell.robot.joints.iter_mut().zip(arm.home) {
+            joint.home = home;
+        }
+        Self::with_drive(&cell, arm, SimulatedDrive::from_cell(&cell).unwrap(), commands)
     }
 
     pub(crate) fn with_drive(
         cell: &Cell,
-        arm: &Ar2010,
-        drive: SimulatedDrive<6>,
-        commands: Vec<Command<6>>,
+        arm: &Arm<N, K>,
+        drive: SimulatedDrive<N>,
+        commands: Vec<Command<N>>,
     ) -> Self {
         let mut bench = Self {
             cycle: Cycle::with_prefilter(
                 config(cell, arm),
-                arm.kinematics,
+                arm.kinematics.clone(),
                 joint_prefilter(cell).unwrap(),
                 arm.home,
             ),
@@ -143,14 +190,33 @@ impl Bench {
         bench
     }
 
-    pub(crate) fn cycle_with(&mut self, event: Event) -> CycleOutput<6> {
+    /// From the start of the job to its end, without a fault: the commanded joints and the segment of each cycle. The joints' limits
+    /// hold.
+    pub(crate) fn run_to_end(&mut self, arm: &Arm<N, K>) -> (Vec<[f64; N]>, Vec<u32>) {
+        self.cycle_with(Event::Start);
+        let (mut joints, mut segments) = (Vec::new(), Vec::new());
+        for _ in 0..100_000 {
+            let output = self.cycle();
+            assert_eq!(output.status.fault, None);
+            joints.push(output.command.position);
+            segments.push(output.status.segment);
+            if output.status.mode == Mode::Standstill {
+                let shares = worst_shares(&joints, arm, self.period);
+                assert!(shares[0] <= 1.0 && shares[1] <= 1.001 && shares[2] <= 1.01, "{shares:?}");
+                return (joints, segments);
+            }
+        }
+        panic!("the run does not end");
+    }
+
+    pub(crate) fn cycle_with(&mut self, event: Event) -> CycleOutput<N> {
         self.input.event = Some(event);
         let output = self.cycle();
         assert_eq!(output.status.refused, None, "{event:?}");
         output
     }
 
-    pub(crate) fn cycle(&mut self) -> CycleOutput<6> {
+    pub(crate) fn cycle(&mut self) -> CycleOutput<N> {
         let output = self.cycle.step(&self.input, &mut self.queue, &mut NoClock);
         self.input.event = None;
         self.input.fault = None;
@@ -160,10 +226,14 @@ impl Bench {
 }
 
 /// Largest differences of the commands as shares of the limits: velocity, acceleration, jerk.
-pub(crate) fn worst_shares(commands: &[[f64; 6]], arm: &Ar2010, period: f64) -> [f64; 3] {
+pub(crate) fn worst_shares<const N: usize, K>(
+    commands: &[[f64; N]],
+    arm: &Arm<N, K>,
+    period: f64,
+) -> [f64; 3] {
     let mut worst = [0.0_f64; 3];
     for q in commands.windows(4) {
-        for joint in 0..6 {
+        for joint in 0..N {
             let d = |k: usize| (q[k + 1][joint] - q[k][joint]) / period;
             let shares = [
                 d(2) / arm.limits.velocity[joint],

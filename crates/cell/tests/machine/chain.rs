@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
-use seamline::control::{Command, Event, Mode};
 use seamline::kinematics::Kinematics;
 use seamline_cell::cell::Cell;
 use seamline_cell::job::{
@@ -11,7 +10,9 @@ use seamline_cell::job::{
 };
 use seamline_cell::plan::{Arm, Planned, Planner};
 
-use crate::bench::{Ar2010, Bench, Random, independent_forward, independent_torch, move_to, worst_shares};
+use crate::bench::{
+    Ar2010, Bench, Random, commands, independent_forward, independent_torch, move_to, planned, with_zone,
+};
 
 /// Joints in which the tool is at home in front of the robot.
 pub(crate) const HOME: [f64; 6] = [0.0, 0.2, -0.2, 0.1, -1.2, 0.3];
@@ -28,7 +29,8 @@ impl Way {
     /// Points by their distance from the start, in mm in a plane that lies askew, and a turn of the tool in degrees about its z axis.
     pub(crate) fn new(points: &[([f64; 2], f64)]) -> Self {
         let cell = Cell::default_cell().unwrap();
-        let arm: Ar2010 = Arm::from_cell(&cell).unwrap();
+        let mut arm: Ar2010 = Arm::from_cell(&cell).unwrap();
+        arm.home = HOME;
         let torch = independent_torch();
         let start = independent_forward(&HOME) * torch;
         let (u, v) = (Vector3::new(0.6, 0.8, 0.0), Vector3::new(-0.48, 0.36, 0.8));
@@ -49,11 +51,7 @@ impl Way {
 
     fn step(&self, point: usize, path: MovePath, mm_s: f64, zone: Zone) -> Step {
         let speed = Speed::Linear { mm_s };
-        let mut step = move_to(point as u32, path, speed, &self.arm, &self.joints[point]);
-        if let Action::Move(r#move) = &mut step.action {
-            r#move.zone = zone;
-        }
-        step
+        with_zone(move_to(point as u32, path, speed, &self.arm, &self.joints[point]), zone)
     }
 
     pub(crate) fn lines(&self, mm_s: f64, zone: Zone) -> Vec<Step> {
@@ -61,49 +59,18 @@ impl Way {
     }
 
     pub(crate) fn plan(&self, steps: &[Step]) -> Vec<Planned<6>> {
-        let mut planner = Planner::new(&self.arm, &self.cell, HOME).unwrap();
-        let mut parts = Vec::new();
-        for step in steps {
-            planner.take(step, &mut parts).unwrap();
-        }
-        planner.finish(&mut parts).unwrap();
-        parts
+        planned(&self.cell, &self.arm, steps).unwrap()
     }
 
     pub(crate) fn run(&self, parts: &[Planned<6>]) -> Trace {
-        let mut arm = self.arm.clone();
-        arm.home = HOME;
-        let mut cell = self.cell.clone();
-        for (joint, home) in cell.robot.joints.iter_mut().zip(HOME) {
-            joint.home = home;
-        }
-        // As in a run of the program, a marker follows each part.
-        let mark = |(k, part): (usize, &Planned<6>)| {
-            part.commands.iter().copied().chain([Command::Marker(k as u32 + 1)]).collect::<Vec<_>>()
-        };
-        let mut commands: Vec<_> = parts.iter().enumerate().flat_map(mark).collect();
-        commands.push(Command::End);
-        let mut bench = Bench::new(&cell, &arm, commands);
-        bench.cycle_with(Event::Start);
-        let mut trace = Trace { joints: Vec::new(), tools: Vec::new(), segments: Vec::new() };
-        for _ in 0..100_000 {
-            let output = bench.cycle();
-            assert_eq!(output.status.fault, None);
-            trace.joints.push(output.command.position);
-            trace.tools.push(independent_forward(&output.command.position) * independent_torch());
-            trace.segments.push(output.status.segment);
-            if output.status.mode == Mode::Standstill {
-                let shares = worst_shares(&trace.joints, &self.arm, cell.cycle.period);
-                assert!(shares[0] <= 1.0 && shares[1] <= 1.001 && shares[2] <= 1.01, "{shares:?}");
-                return trace;
-            }
-        }
-        panic!("the run does not end");
+        let mut bench = Bench::new(&self.cell, &self.arm, commands(parts));
+        let (joints, segments) = bench.run_to_end(&self.arm);
+        let tool = |q: &[f64; 6]| independent_forward(q) * independent_torch();
+        Trace { tools: joints.iter().map(tool).collect(), segments }
     }
 }
 
 pub(crate) struct Trace {
-    pub(crate) joints: Vec<[f64; 6]>,
     pub(crate) tools: Vec<Isometry3<f64>>,
     segments: Vec<u32>,
 }
@@ -161,6 +128,26 @@ fn corners_are_passed_at_speed_within_their_error() {
         assert!((0.49..=0.5 + 1e-3).contains(&error), "{error}");
     }
     assert!(trace.distance(&way.poses[5]) < 1e-3);
+}
+
+/// The corner that was measured on a real robot of this class (legs of 57.7 mm, 10 mm/s): there it cost either 11.77 s at 0.1 mm of
+/// error, or an error of 7.65 mm at up to 12.9 mm/s. A turn by 60 degrees and, sharper, one by 120, which leaves an angle of 60.
+#[test]
+fn the_corner_of_a_real_robot_costs_neither_time_nor_error() {
+    for degrees in [60.0_f64, 120.0] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let way = Way::new(&[([57.7, 0.0], 0.0), ([57.7 * (1.0 + cos), 57.7 * sin], 0.0)]);
+        let trace = way.run(&way.plan(&way.lines(10.0, Zone::Unspecified)));
+        let speeds = trace.speeds();
+        let moving = |speed: &f64| *speed > 1e-6;
+        let (first, last) =
+            (speeds.iter().position(moving).unwrap(), speeds.iter().rposition(moving).unwrap());
+        let time = (last + 1 - first) as f64 * way.cell.cycle.period;
+        let error = trace.distance(&way.poses[1]);
+        let greatest = speeds.iter().copied().fold(0.0, f64::max);
+        println!("{degrees} degrees: {error:.4} mm, {time:.3} s, at most {greatest:.4} mm/s");
+        assert!(error <= 0.5 && time <= 11.6 && greatest <= 10.05, "{error} mm, {time} s, {greatest} mm/s");
+    }
 }
 
 /// Position levels, a corner radius and exact stops in one chain, at several speeds.
