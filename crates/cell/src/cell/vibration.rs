@@ -63,7 +63,7 @@ impl FlexibleMode {
 
 impl Vibration {
     /// How far the prefilters may turn the tool off a path, in radians: 0.2°, as at corners.
-    pub const TURN_ERROR: f64 = 0.2 * std::f64::consts::PI / 180.0;
+    pub const TURN_ERROR: f64 = 3.5e-3;
 
     /// A prefilter for modes, with the distance in metres that it may take the tool off its path.
     ///

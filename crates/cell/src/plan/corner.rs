@@ -1,9 +1,13 @@
 //! How one move runs on into the next.
 
+use seamline::geometry::Vector3;
 use seamline::path::Path;
 use seamline::path::corner::{Blend, Corner, CornerZone, MustStop};
 
+use super::route::Route;
 use super::run::Stops;
+use super::smear::Smear;
+use super::smeared_corner::Passing;
 use super::speed::on_bends;
 use super::timing::PathLimits;
 
@@ -13,6 +17,10 @@ const REACH_TIME: f64 = 0.1;
 const REACH: [f64; 2] = [5.0, 20.0];
 /// Share of a move that its zones at either end may take.
 pub(super) const SHARE: f64 = 0.45;
+
+/// Shares of the permitted error that a blend may have where prefilters add to it, the preferred one last: what is left serves the
+/// corners next to it too.
+pub(super) const BLEND_SHARES: [f64; 3] = [0.25, 0.375, 0.5];
 
 /// How a move passes into the next, at most `error` metres from the point between: nothing where they may run on as they are, otherwise
 /// a blend. `paths` are what is left of the two moves, `lengths` those of the whole moves, `speed` the faster one's.
@@ -39,6 +47,20 @@ pub(super) fn passing(
             MustStop::NothingPermitted => "the cell permits no corner error here",
         })),
     }
+}
+
+/// How fast a blend may be passed by itself, up to `fastest`, with what prefilters add to its error.
+pub(super) fn corner_speed(
+    blend: &Blend,
+    corner: Vector3,
+    permitted: f64,
+    fastest: f64,
+    smear: &Smear,
+) -> f64 {
+    let mut route = Route::default();
+    [blend.before, blend.path, blend.after].into_iter().for_each(|path| route.push(path));
+    let ends = [route.start_of(1), route.start_of(2)];
+    Passing { route: &route, blend: ends, corner, permitted }.speed(smear, fastest)
 }
 
 /// The gentler limits of both neighbours, and no more acceleration and jerk across the path than along it.

@@ -65,12 +65,12 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     fn hand_out(&mut self, sight: &Sight, out: &mut Vec<Planned<N>>) -> Result<bool, PlanError> {
         let (route, stretches) = self.run.route(sight.to);
         let (arm, tool, start) = (self.arm, self.tool.flange_from_tcp, self.joints);
-        let (ahead, _) = self.run.route(self.run.past_corner(sight.to + self.run.reach()));
+        let (ahead, _) = self.run.route(self.run.past_corner(sight.to + 2.0 * self.run.reach()));
         let mut joints = match PathJoints::follow(&arm.kinematics, ahead.clone(), &tool, &start) {
             Ok(joints) => joints,
             Err((s, error)) => return Err(self.fault(&ahead, s, &self.follow_reason(&error))),
         };
-        let caps = self.caps(&mut joints, sight.to);
+        let caps = self.caps(&ahead, &mut joints, sight.to);
         let stretches = smear::slowed(&stretches, &caps, self.run.speed);
         let mut joints = joints.over(route.clone());
         let course = Course { stretches: &stretches, start: self.run.speed, open: sight.open };

@@ -18,6 +18,7 @@ mod resolve;
 mod route;
 mod run;
 mod smear;
+mod smeared_corner;
 mod speed;
 mod suggest;
 pub mod timing;

@@ -4,9 +4,10 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use seamline::geometry::Pose;
+use seamline::path::corner::Blend;
 use seamline::path::{Measure, Path, TimingPiece};
 
-use super::corner::{SHARE, limits, passing};
+use super::corner::{BLEND_SHARES, SHARE, corner_speed, limits, passing};
 use super::resolve::Goal;
 use super::route::Route;
 use super::smear::{Cap, Smear};
@@ -50,10 +51,10 @@ pub(super) struct Piece<const N: usize> {
     pub(super) begun: bool,
     /// Somewhere on it the speed is below the programmed one.
     slowed: bool,
-    /// How far prefilters may take the tool off it, in metres.
-    pub(super) slack: f64,
-    /// How far they do, as far as it has been looked at.
+    /// How far prefilters take the tool off it, as far as it has been looked at, in metres.
     pub(super) off: f64,
+    /// Of a corner: the speed that prefilters permit, where it is known.
+    pub(super) cap: Option<f64>,
     /// Steps that take no time, done when the piece is.
     pub(super) after: Vec<Step>,
 }
@@ -150,15 +151,20 @@ impl<const N: usize> Run<N> {
             return Ok(());
         };
         if let Some(smear) = self.smear {
-            let at_speed = limits(&corner, &last.limits, &link.limits).speed;
-            let shape = corner.error * corner.greatest_curvature;
-            corner = blend(smear.blend_error(permitted, shape, at_speed))?.unwrap_or(corner);
+            let point = link.path.pose(0.0).translation.vector;
+            // Best is what does not slow down the moves on either side, and next what is passed fastest.
+            let worth = |blend: &Blend| {
+                let cap = corner_speed(blend, point, permitted, speed, &smear);
+                if cap < speed { cap.min(limits(blend, &last.limits, &link.limits).speed) } else { cap }
+            };
+            let blends = BLEND_SHARES.iter().filter_map(|share| blend(share * permitted).ok()?);
+            corner = blends.max_by(|a, b| worth(a).total_cmp(&worth(b))).unwrap_or(corner);
         }
         last.path = corner.before;
         last.info.rounded[1] = rounded(corner.trims[0], last.limits.speed, self.smear);
         *segment += 1;
         let limits = limits(&corner, &last.limits, &link.limits);
-        let piece = Piece { slack: permitted - corner.error, ..last.corner(&corner.path, limits, *segment) };
+        let piece = last.corner(&corner.path, limits, *segment);
         self.pieces.push_back(piece);
         self.add(link, corner.after, corner.trims[1], segment);
         Ok(())
@@ -169,10 +175,8 @@ impl<const N: usize> Run<N> {
         let (mut info, limits) = (link.info(*segment), link.limits);
         info.rounded[0] = if offset > 0.0 { rounded(offset, limits.speed, self.smear) } else { 0.0 };
         let link = Arc::new(link.clone());
-        let (after, slack) = (Vec::new(), self.smear.map_or(0.0, |smear| smear.path_error));
-        let piece =
-            Piece { link, info, path, limits, offset, begun: false, slowed: false, slack, off: 0.0, after };
-        self.pieces.push_back(piece);
+        let (begun, slowed, off, cap, after) = (false, false, 0.0, None, Vec::new());
+        self.pieces.push_back(Piece { link, info, path, limits, offset, begun, slowed, off, cap, after });
     }
 
     /// A step that takes no time, when all moves so far are done.
@@ -191,7 +195,8 @@ impl<const N: usize> Run<N> {
             return Some(Sight { to: whole, open: false });
         }
         // The end of the last move may yet become a corner.
-        let certain = if closed { whole } else { whole - SHARE * last.link.path.length() - self.reach() };
+        let certain =
+            if closed { whole } else { whole - SHARE * last.link.path.length() - 2.0 * self.reach() };
         let to = self.reached_in(HORIZON * factor);
         (to < certain).then_some(Sight { to, open: true })
     }
@@ -218,6 +223,13 @@ impl<const N: usize> Run<N> {
     pub(super) fn note_off(&mut self, index: usize, off: f64) {
         if let Some(piece) = self.pieces.get_mut(index) {
             piece.off = piece.off.max(off);
+        }
+    }
+
+    /// The speed that prefilters permit at a corner.
+    pub(super) fn cap_corner(&mut self, index: usize, speed: f64) {
+        if let Some(piece) = self.pieces.get_mut(index) {
+            piece.cap = Some(speed);
         }
     }
 
@@ -350,8 +362,8 @@ impl<const N: usize> Piece<N> {
         };
         let info = SegmentInfo { segment, kind, speed: Some(limits.speed), constant_part: None, ..self.info };
         let after = std::mem::take(&mut self.after);
-        let (begun, slowed, slack, off) = (false, false, 0.0, 0.0);
-        Self { link, info, path: *blend, limits, offset: length, begun, slowed, slack, off, after }
+        let (begun, slowed, off, cap) = (false, false, 0.0, None);
+        Self { link, info, path: *blend, limits, offset: length, begun, slowed, off, cap, after }
     }
 
     /// From where to where the plan holds the programmed speed, with what this timing adds; in the coordinate of the link.

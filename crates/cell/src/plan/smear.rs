@@ -11,7 +11,7 @@
 //! matter, and neither do override and pause. `docs/vibration.md` has the derivation.
 
 use nalgebra::SVector;
-use seamline::geometry::Pose;
+use seamline::geometry::{Pose, Vector3};
 use seamline::kinematics::{JointJet, Kinematics};
 use seamline::path::{Measure, Path};
 use seamline::vibration::Kernel;
@@ -21,18 +21,20 @@ use super::error::{PlanError, Problem};
 use super::joint_path::PathJoints;
 use super::planner::Planner;
 use super::remark::{Remarks, units};
+use super::route::Route;
 use super::run::Piece;
+use super::smeared_corner::Passing;
 use super::timing::{JointPath as _, PathLimits, Stretch};
 use crate::cell::Vibration;
-use crate::record::SegmentInfo;
+use crate::record::{SegmentInfo, SegmentKind};
 
 /// Places of a path that are looked at: this far apart, in metres and in radians of the tool's turn, and how many at least and at most.
 const SPACING: [f64; 2] = [5e-3, 0.02];
 const PLACES: [f64; 2] = [24.0, 2_000.0];
 /// Speeds are rounded down to powers of this, so that they do not change from place to place.
 const STEP: f64 = 1.02;
-/// What a corner leaves for the curvature of the joints' own.
-const MARGIN: f64 = 1.05;
+/// What a corner leaves of its permitted error for the joints' own curvature.
+const FOR_JOINTS: f64 = 0.05;
 /// A weld that is this far off its path is worth a word, in metres.
 const WORTH_A_WORD: f64 = 1e-5;
 /// A slowdown within this share of the speed is rounding.
@@ -42,7 +44,7 @@ const SAME_SPEED: f64 = 1e-3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Smear {
     /// σ², in s².
-    variance: f64,
+    pub(super) variance: f64,
     /// How long a command takes to come out whole, and at a constant rate, in seconds.
     pub(super) length: f64,
     pub(super) delay: f64,
@@ -90,17 +92,8 @@ impl Smear {
         if square.is_nan() { f64::INFINITY } else { square.sqrt() }
     }
 
-    /// How much of a corner's permitted error its blend may have, so that what the prefilters add at a speed keeps within the rest; half
-    /// of it where the speed must give way. `shape` is a blend's error times its curvature, which does not depend on its size.
-    pub(super) fn blend_error(&self, permitted: f64, shape: f64, speed: f64) -> f64 {
-        // The error e leaves ½ σ² (shape/e) v²: e² − permitted · e + ½ σ² shape v² = 0.
-        let off = 2.0 * MARGIN * self.variance * shape * speed * speed;
-        0.5 * (permitted + (permitted * permitted - off).max(0.0).sqrt())
-    }
-
     /// A cap on account of what lies between two places.
     fn cap(&self, [place, end]: [f64; 2], speed: f64) -> Cap {
-        let speed = STEP.powf((speed.ln() / STEP.ln()).floor());
         let reach = speed * self.length;
         Cap { place, from: place - reach, to: end + reach, speed }
     }
@@ -112,13 +105,33 @@ impl Bend {
     }
 }
 
-/// The bend of a path where its joints are `jet`, their derivatives along the path.
-fn bend<const N: usize>(kinematics: &impl Kinematics<N>, jet: &JointJet<N>, flange_from_tcp: &Pose) -> Bend {
+/// The bend of a path where its joints are `jet`, their derivatives along the path; without the curvature that is accounted for
+/// otherwise.
+fn bend<const N: usize>(
+    kinematics: &impl Kinematics<N>,
+    jet: &JointJet<N>,
+    flange_from_tcp: &Pose,
+    accounted: &[Vector3; 2],
+) -> Bend {
     let axes = kinematics.axes(&jet.position);
     let twist = axes.jacobian() * SVector::from(jet.acceleration);
     let (linear, angular) = (twist.fixed_rows::<3>(0), twist.fixed_rows::<3>(3));
     let lever = axes.base_from_flange.rotation * flange_from_tcp.translation.vector;
-    Bend { place: (linear + angular.cross(&lever)).norm(), turn: angular.norm() }
+    Bend {
+        place: (linear + angular.cross(&lever) - accounted[0]).norm(),
+        turn: (angular - accounted[1]).norm(),
+    }
+}
+
+/// The power of [`STEP`] below a speed.
+fn stepped(speed: f64) -> f64 {
+    STEP.powf((speed.ln() / STEP.ln()).floor())
+}
+
+/// The path's own second derivatives: of the tool's place and of its turning.
+fn of_path(route: &Route, s: f64) -> [Vector3; 2] {
+    let jet = route.jet(s);
+    [jet.linear[1], jet.angular[1]]
 }
 
 /// The places of a move's path that are looked at, between two coordinates. They lie where they lie on the whole move, whatever part of it
@@ -178,36 +191,47 @@ pub(super) fn lagging(info: &SegmentInfo, smear: Option<&Smear>) -> SegmentInfo 
 impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     /// The speeds not to pass on account of what prefilters do to the way ahead. Takes note of how far they take the tool off what lies
     /// before `to`.
-    pub(super) fn caps(&mut self, joints: &mut PathJoints<'_, N, K>, to: f64) -> Vec<Cap> {
+    pub(super) fn caps(&mut self, ahead: &Route, joints: &mut PathJoints<'_, N, K>, to: f64) -> Vec<Cap> {
         let Some(smear) = self.run.smear else { return Vec::new() };
+        let (fastest, reach) = (self.run.fastest(), self.run.reach());
         let mut caps = std::mem::take(&mut self.run.caps);
-        let mut bends = Vec::new();
+        let (mut bends, mut corners) = (Vec::new(), Vec::new());
         for (index, (from, piece)) in self.run.placed().enumerate() {
-            let length = piece.path.length().min(joints.length() - from);
+            let length = piece.path.length().min(ahead.length() - from);
             if length <= 0.0 {
                 break;
             }
-            let mut bend = |s: f64| {
+            let mut bend = |s: f64, accounted: &[Vector3; 2]| {
                 let jet = joints.jet(s).ok()?;
-                Some(bend(&self.arm.kinematics, &jet, &self.tool.flange_from_tcp))
+                Some(bend(&self.arm.kinematics, &jet, &self.tool.flange_from_tcp, accounted))
             };
-            if piece.is_corner() {
-                // Its cap is known since it came into sight.
-                let places = places(&piece.path, 0.0, length).filter(|_| !piece.begun);
-                let greatest = places.filter_map(|s| bend(from + s)).fold(Bend::default(), Bend::greater);
-                caps.push(smear.cap([from, from + length], smear.speed(&greatest, piece.slack)));
+            if let SegmentKind::Corner { corner, permitted, .. } = piece.info.kind {
+                let blend = [from, from + length];
+                // What lies on either side of it must be in sight; then its cap stays.
+                if piece.cap.is_none() && from < to + reach {
+                    let passing = Passing { route: ahead, blend, corner, permitted };
+                    let joints = places(&piece.path, 0.0, length)
+                        .filter_map(|s| bend(from + s, &of_path(ahead, from + s)))
+                        .fold(Bend::default(), Bend::greater);
+                    let speed = passing.speed(&smear, fastest);
+                    corners.push((index, blend, speed.min(smear.speed(&joints, FOR_JOINTS * permitted))));
+                }
+                caps.extend(piece.cap.map(|speed| smear.cap(blend, speed)));
                 continue;
             }
             for s in places(&piece.link.path, piece.offset, piece.offset + length) {
                 let place = from + s - piece.offset;
-                let Some(bend) = bend(place) else { continue };
-                caps.push(smear.cap([place, place], smear.speed(&bend, piece.slack)));
+                let Some(bend) = bend(place, &[Vector3::zeros(); 2]) else { continue };
+                caps.push(smear.cap([place, place], stepped(smear.speed(&bend, smear.path_error))));
                 if place < to {
                     bends.push((index, place, bend, piece.limits.speed));
                 }
             }
         }
-        let fastest = self.run.fastest();
+        for (index, blend, speed) in corners {
+            self.run.cap_corner(index, speed);
+            caps.push(smear.cap(blend, speed));
+        }
         caps.retain(|cap| cap.speed < fastest);
         for (index, place, bend, speed) in bends {
             self.run.note_off(index, smear.error(&bend, speed.min(least(&caps, place, place))));

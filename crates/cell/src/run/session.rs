@@ -136,8 +136,8 @@ fn logical<const N: usize, K: PlanningArm<N>>(
 fn acceptance(cell: &Cell) -> Acceptance {
     let mut acceptance = Acceptance::default();
     if !cell.vibration.kernels().is_empty() {
-        acceptance.path_deviation += cell.vibration.path_error();
-        acceptance.orientation_deviation += Vibration::TURN_ERROR;
+        acceptance.path_deviation = acceptance.path_deviation.max(cell.vibration.path_error());
+        acceptance.orientation_deviation = Vibration::TURN_ERROR;
     }
     acceptance
 }

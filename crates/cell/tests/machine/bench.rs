@@ -168,13 +168,9 @@ impl<const N: usize, K: PlanningArm<N>> Bench<N, K> {
         drive: SimulatedDrive<N>,
         commands: Vec<Command<N>>,
     ) -> Self {
+        let prefilter = joint_prefilter(cell).unwrap();
         let mut bench = Self {
-            cycle: Cycle::with_prefilter(
-                config(cell, arm),
-                arm.kinematics.clone(),
-                joint_prefilter(cell).unwrap(),
-                arm.home,
-            ),
+            cycle: Cycle::with_prefilter(config(cell, arm), arm.kinematics.clone(), prefilter, arm.home),
             drive,
             queue: Queue(commands.into()),
             input: CycleInput {
@@ -244,6 +240,17 @@ pub(crate) fn worst_shares<const N: usize, K>(
         }
     }
     worst
+}
+
+/// A cell whose arm has flexible modes (Hz), and a prefilter for them.
+pub(crate) fn flexible(prefilter: &str, modes: &[f64]) -> Cell {
+    let mut text = format!("[vibration]\nprefilter = \"{prefilter}\"\n[arc]\nrefuse_slowdown = false\n");
+    for (k, frequency) in modes.iter().enumerate() {
+        let number = k + 1;
+        text +=
+            &format!("[[flexible_mode]]\nnumber = {number}\nfrequency_hz = {frequency:?}\ndamping = 0.02\n");
+    }
+    Cell::parse(&text, "flexible.toml").unwrap()
 }
 
 /// splitmix64.

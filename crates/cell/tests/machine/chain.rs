@@ -19,7 +19,7 @@ pub(crate) const HOME: [f64; 6] = [0.0, 0.2, -0.2, 0.1, -1.2, 0.3];
 
 pub(crate) struct Way {
     pub(crate) cell: Cell,
-    pub(crate) arm: Ar2010,
+    arm: Ar2010,
     /// The taught poses, the start first.
     pub(crate) poses: Vec<Isometry3<f64>>,
     joints: Vec<[f64; 6]>,
@@ -27,8 +27,11 @@ pub(crate) struct Way {
 
 impl Way {
     /// Points by their distance from the start, in mm in a plane that lies askew, and a turn of the tool in degrees about its z axis.
-    pub(crate) fn new(points: &[([f64; 2], f64)]) -> Self {
-        let cell = Cell::default_cell().unwrap();
+    fn new(points: &[([f64; 2], f64)]) -> Self {
+        Self::in_cell(Cell::default_cell().unwrap(), points)
+    }
+
+    pub(crate) fn in_cell(cell: Cell, points: &[([f64; 2], f64)]) -> Self {
         let mut arm: Ar2010 = Arm::from_cell(&cell).unwrap();
         arm.home = HOME;
         let torch = independent_torch();
@@ -49,7 +52,7 @@ impl Way {
         Self { cell, arm, poses, joints }
     }
 
-    fn step(&self, point: usize, path: MovePath, mm_s: f64, zone: Zone) -> Step {
+    pub(crate) fn step(&self, point: usize, path: MovePath, mm_s: f64, zone: Zone) -> Step {
         let speed = Speed::Linear { mm_s };
         with_zone(move_to(point as u32, path, speed, &self.arm, &self.joints[point]), zone)
     }
@@ -250,8 +253,9 @@ fn a_spline_passes_its_points() {
 
 /// Random runs: points 3 to 120 mm apart at any angle, 5 to 500 mm/s, every kind of zone, the tool turning by up to 10 degrees. Each is
 /// executed: the joints' limits hold, no corner is missed by more than is permitted, and no move is faster than programmed.
-fn random_runs(seed: u64, cases: usize) {
+pub(crate) fn random_runs(seed: u64, cases: usize, cell: &Cell) {
     let mut random = Random(seed);
+    let prefiltered = !cell.vibration.kernels().is_empty();
     for case in 0..cases {
         let (mut at, mut points) = ([0.0, 0.0], Vec::new());
         for _ in 0..6 {
@@ -261,7 +265,7 @@ fn random_runs(seed: u64, cases: usize) {
             at = at.map(|x: f64| if x.abs() > 120.0 { x * 0.5 } else { x });
             points.push((at, random.within(-10.0, 10.0)));
         }
-        let way = Way::new(&points);
+        let way = Way::in_cell(cell.clone(), &points);
         let zones: Vec<Zone> = (0..6)
             .map(|_| match random.within(0.0, 4.0) as u8 {
                 0 => Zone::Exact,
@@ -292,8 +296,9 @@ fn random_runs(seed: u64, cases: usize) {
             .collect();
         for (k, speed) in trace.speeds().iter().enumerate() {
             let pair = [trace.segments[k], trace.segments[k + 1]];
-            let most =
-                pair.iter().filter_map(|segment| programmed.get(segment)).fold(0.0, |a: f64, b| a.max(*b));
+            // Behind a prefilter the speed changes before and after the place where it is programmed to.
+            let here = programmed.iter().filter(|(segment, _)| pair.contains(segment) || prefiltered);
+            let most = here.fold(0.0, |a: f64, (_, b)| a.max(*b));
             assert!(*speed <= most * 1001.0 + 1e-3, "case {case}, cycle {k}: {speed} mm/s of {most} m/s");
         }
     }
@@ -301,12 +306,12 @@ fn random_runs(seed: u64, cases: usize) {
 
 #[test]
 fn random_runs_keep_limits_errors_and_speeds() {
-    random_runs(7, 25);
+    random_runs(7, 25, &Cell::default_cell().unwrap());
 }
 
 /// As above, many: `cargo test --release -p seamline-cell --test machine many_random -- --ignored`.
 #[test]
 #[ignore = "takes minutes"]
 fn many_random_runs() {
-    random_runs(8, 2_000);
+    random_runs(8, 2_000, &Cell::default_cell().unwrap());
 }

@@ -4,7 +4,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell as Flag;
 
-use crate::bench::{Ar2010, move_to};
+use crate::bench::{Ar2010, flexible, move_to};
 use rtrb::RingBuffer;
 use seamline::control::{Command, Event, Mode};
 use seamline_cell::cell::Cell;
@@ -69,13 +69,21 @@ fn commands(cell: &Cell, arm: &Ar2010) -> Vec<Command<6>> {
 
 #[test]
 fn a_million_cycles_allocate_nothing() {
-    let cell = Cell::default_cell().unwrap();
-    let arm = Arm::from_cell(&cell).unwrap();
-    let commands = commands(&cell, &arm);
+    run(&Cell::default_cell().unwrap());
+}
+
+#[test]
+fn nor_do_they_with_prefilters_for_two_modes() {
+    run(&flexible("fir-zvd", &[6.34, 17.0]));
+}
+
+fn run(cell: &Cell) {
+    let arm = Arm::from_cell(cell).unwrap();
+    let commands = commands(cell, &arm);
     let (mut producer, consumer) = RingBuffer::new(commands.len());
     commands.into_iter().for_each(|command| producer.push(command).unwrap());
-    let drive = SimulatedDrive::<6>::from_cell(&cell).unwrap();
-    let mut machine = Machine::new(&cell, &arm, drive, MonotonicClock::default(), consumer).unwrap();
+    let drive = SimulatedDrive::<6>::from_cell(cell).unwrap();
+    let mut machine = Machine::new(cell, &arm, drive, MonotonicClock::default(), consumer).unwrap();
     machine.request(Event::Enable);
     machine.cycle();
     machine.request(Event::Start);
