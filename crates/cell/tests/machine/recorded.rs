@@ -6,21 +6,26 @@ use nalgebra::{Isometry3, Vector3};
 use seamline_cell::cell::Cell;
 use seamline_cell::job::JobSet;
 use seamline_cell::plan::Arm;
-use seamline_cell::record::{Recording, Sample};
-use seamline_cell::run::{RunOptions, run};
+use seamline_cell::record::{Recording, Sample, SegmentKind, Verdict};
+use seamline_cell::run::{RunOptions, RunReport, run};
 
-use crate::bench::{Ar2010, independent_forward, independent_torch, worst_shares};
+use crate::bench::{Ar2010, flexible, independent_forward, independent_torch, worst_shares};
 
 fn recorded(job: &str) -> (Vec<Sample>, Cell, Ar2010) {
     let cell = Cell::default_cell().unwrap();
-    let arm = Arm::from_cell(&cell).unwrap();
+    let (_, samples, arm) = recorded_in(&cell, job, job);
+    (samples, cell, arm)
+}
+
+fn recorded_in(cell: &Cell, job: &str, folder: &str) -> (RunReport, Vec<Sample>, Ar2010) {
+    let arm = Arm::from_cell(cell).unwrap();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let jobs = JobSet::load(&root.join("examples/jobs").join(job)).unwrap();
-    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(job);
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
     let options = RunOptions { out: out.clone(), speed_override: 1.0, realtime: false };
-    run(&jobs, &cell, &arm, &options, |_| {}).unwrap();
+    let report = run(&jobs, cell, &arm, &options, |_| {}).unwrap();
     let recording = Recording::read(&out.join("recording.csv")).unwrap();
-    (recording.samples, cell, arm)
+    (report, recording.samples, arm)
 }
 
 fn joints(sample: &Sample) -> [f64; 6] {
@@ -93,4 +98,32 @@ fn the_line_past_the_wrist_pole_stays_straight() {
         velocity <= 1.0 + 1e-6 && acceleration <= 1.0 + 1e-4 && jerk <= 1.01,
         "{velocity} {acceleration} {jerk}"
     );
+}
+
+/// A job with corners, an arc and a spline behind a prefilter, at a weld's speed: every figure is within its bounds, samples stand in the
+/// segment that the arm is in, and the weld is left by micrometres only.
+#[test]
+fn the_figures_are_right_behind_a_prefilter() {
+    let (report, samples, _) = recorded_in(&flexible("fir-zvd", &[10.0]), "contour.JBI", "prefiltered");
+    assert_eq!(report.summary.verdict, Verdict::Ok, "{}", report.summary);
+    let findings = &report.findings;
+    let mut corners = 0;
+    for (segment, figures) in findings.segments.iter().zip(&findings.moves) {
+        if let SegmentKind::Corner { corner, permitted, .. } = segment.kind {
+            let distance = |sample: &Sample| (tcp(sample).translation.vector - corner).norm();
+            let (nearest, least) = samples
+                .iter()
+                .map(|sample| (sample.segment, distance(sample)))
+                .fold((0, f64::INFINITY), |least, here| if here.1 < least.1 { here } else { least });
+            // The figure looks between the samples as well, which are 12 µm apart.
+            let found = figures.corner_error_mm.unwrap() / 1e3;
+            assert_eq!(nearest, segment.segment);
+            assert!(found <= least && least - found < 6e-6 && found <= permitted, "{found} {least}");
+            corners += 1;
+        }
+    }
+    assert_eq!(corners, 6);
+    let lines: Vec<_> = findings.moves.iter().filter(|of| of.kind == "MOVL" && of.arc).collect();
+    assert!(lines.len() == 5 && lines.iter().all(|of| of.straightness_max_mm.unwrap() < 1e-3), "{lines:?}");
+    assert!(findings.moves.iter().filter(|of| of.arc).all(|of| of.speed_error_max.is_none_or(|e| e < 1e-3)));
 }
