@@ -204,7 +204,17 @@ fn the_scara_experiment_keeps_its_figures() {
             let wanted = if number(&run["error_um"]) > 0.0 { 0.495..=0.5 } else { 0.0..=1e-3 };
             assert!(errors.len() == 4 && errors.iter().all(|error| wanted.contains(error)), "{run}");
         }
-        is_page(&page, &["SCARA experiment", "Feedrate", "158.96"]);
+        is_page(
+            &page,
+            &[
+                "SCARA experiment",
+                "Feedrate",
+                "158.96",
+                "t_DEC1",
+                "through the prefilters",
+                "Spectrum of what is left",
+            ],
+        );
     }
     let table = seamline("experiment scara");
     let text = String::from_utf8_lossy(&table.stdout).into_owned();

@@ -95,6 +95,7 @@ fn page(arguments: &Arguments, corner: &Corner<'_>, found: &Overlap) -> Page {
         title: "Corner in time".to_owned(),
         facts,
         charts: vec![feedrates(corner, found), path(corner, found)],
+        ..Page::default()
     }
 }
 

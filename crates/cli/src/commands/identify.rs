@@ -77,6 +77,7 @@ fn page(file: &Path, signal: &Signal, found: &Identification) -> Page {
         title: "Identified modes".to_owned(),
         facts,
         charts: vec![record(signal, found), residual(signal, found), spectrum(signal, found)],
+        ..Page::default()
     }
 }
 

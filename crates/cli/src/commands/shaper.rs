@@ -194,5 +194,5 @@ fn page(answer: &Answer, mut facts: Vec<(String, String)>) -> Page {
             )
         },
     ];
-    Page { title: "Prefilters".to_owned(), facts, charts }
+    Page { title: "Prefilters".to_owned(), facts, charts, ..Page::default() }
 }

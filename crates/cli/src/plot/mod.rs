@@ -19,7 +19,17 @@ pub(crate) struct Page {
     pub(crate) title: String,
     /// What was asked, and the main figures: label, value.
     pub(crate) facts: Vec<(String, String)>,
+    pub(crate) tables: Vec<Table>,
     pub(crate) charts: Vec<Chart>,
+}
+
+/// A table above the charts, in words as they are to be read.
+#[derive(Debug, Default, Serialize)]
+pub(crate) struct Table {
+    pub(crate) title: String,
+    /// Headings carry the unit.
+    pub(crate) columns: Vec<&'static str>,
+    pub(crate) rows: Vec<Vec<String>>,
 }
 
 /// One chart. Axis labels carry their unit.
@@ -35,6 +45,8 @@ pub(crate) struct Chart {
     pub(crate) levels: Vec<(f64, String)>,
     /// One scale for both axes: a chart of places.
     pub(crate) equal: bool,
+    /// Powers of ten upward.
+    pub(crate) log: bool,
     /// The whole width of the page.
     pub(crate) wide: bool,
 }
@@ -50,6 +62,39 @@ impl Series {
     pub(crate) fn new(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         Self { name: name.into(), points: points.into_iter().collect() }
     }
+
+    /// With the fewest points between which straight lines pass all others within a tolerance: a step keeps its edge.
+    pub(crate) fn thinned(
+        name: impl Into<String>,
+        points: impl IntoIterator<Item = (f64, f64)>,
+        tolerance: f64,
+    ) -> Self {
+        Self { name: name.into(), points: thinned(points, tolerance) }
+    }
+}
+
+/// A line goes on from the last point kept while some slope passes all points since within the tolerance.
+fn thinned(points: impl IntoIterator<Item = (f64, f64)>, tolerance: f64) -> Vec<(f64, f64)> {
+    let mut points = points.into_iter();
+    let Some(mut last) = points.next() else { return Vec::new() };
+    let mut kept = vec![last];
+    let mut from = last;
+    let mut slopes = (f64::NEG_INFINITY, f64::INFINITY);
+    for point in points {
+        let slope = |y: f64, from: (f64, f64)| (y - from.1) / (point.0 - from.0);
+        if !(slopes.0..=slopes.1).contains(&slope(point.1, from)) {
+            kept.push(last);
+            from = last;
+            slopes = (f64::NEG_INFINITY, f64::INFINITY);
+        }
+        slopes.0 = slopes.0.max(slope(point.1 - tolerance, from));
+        slopes.1 = slopes.1.min(slope(point.1 + tolerance, from));
+        last = point;
+    }
+    if from != last {
+        kept.push(last);
+    }
+    kept
 }
 
 impl Page {
@@ -100,6 +145,25 @@ mod tests {
         assert!(
             html.contains("a \\u003c/script>") && !html.contains("http://") && !html.contains("https://")
         );
+    }
+
+    #[test]
+    fn thinned_points_pass_near_all_others() {
+        let curve = |k: u32| {
+            let x = 0.001 * f64::from(k);
+            (x, if x < 0.5 { (9.0 * x).sin() } else { 2.0 })
+        };
+        let points: Vec<_> = (0..1000).map(curve).collect();
+        let kept = thinned(points.iter().copied(), 1e-3);
+        assert!(kept.len() < 100 && kept.contains(&points[499]) && kept.contains(&points[500]), "{kept:?}");
+        for point in &points {
+            let after = kept.partition_point(|p| p.0 < point.0).max(1);
+            let (a, b) = (kept[after - 1], kept[after]);
+            let line = a.1 + (b.1 - a.1) * (point.0 - a.0) / (b.0 - a.0);
+            assert!((line - point.1).abs() <= 1e-3 + 1e-12, "{point:?}");
+        }
+        assert_eq!(thinned([(1.0, 2.0)], 0.1), [(1.0, 2.0)]);
+        assert!(thinned([], 0.1).is_empty());
     }
 
     #[test]

@@ -1,7 +1,9 @@
-// Draws the charts of `page`: { title, facts, charts: [{ title, x, y, series, marks, levels, equal, wide }] }.
+// Draws `page`: { title, facts, tables: [{ title, columns, rows }], charts: [{ title, x, y, series, marks, levels, equal, log, wide }] }.
 
 const COLOURS = ["#2f6fb3", "#d9480f", "#2b8a3e", "#7048c8", "#b08800", "#0b8794", "#c2255c", "#5f6c7b", "#111111", "#82c91e"];
 const FONT = '11px system-ui, "Segoe UI", Roboto, Arial, "DejaVu Sans", sans-serif';
+// How many powers of ten below the greatest value are shown.
+const DECADES = 5;
 const FRAME = { left: 58, top: 18, right: 12, bottom: 34 };
 
 function make(host, tag, text) {
@@ -20,6 +22,12 @@ function ticks(low, high, count) {
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) made.push(k * step);
   return { made, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
 }
+
+const powers = (low, high) => {
+  const made = [];
+  for (let k = Math.ceil(low); k <= high; k++) made.push(10 ** k);
+  return { made, digits: null };
+};
 
 const readout = (value) => (value === 0 ? "0" : Math.abs(value) < 1e-3 ? value.toExponential(2) : value.toPrecision(4));
 
@@ -68,14 +76,24 @@ class LineChart {
     this.draw();
   }
 
+  // Upward, what is drawn is the value or its power of ten.
+  up(value) {
+    return this.chart.log ? Math.log10(Math.max(value, 1e-300)) : value;
+  }
+
   range(axis) {
     const { series, marks, levels } = this.chart;
     let low = Infinity, high = -Infinity;
-    const take = (value) => { low = Math.min(low, value); high = Math.max(high, value); };
+    const take = (number) => {
+      const value = axis === 1 ? this.up(number) : number;
+      low = Math.min(low, value);
+      high = Math.max(high, value);
+    };
     for (const { points } of series) for (const point of points) take(point[axis]);
     for (const [value] of axis === 0 ? marks : levels) take(value);
     if (!(high > low)) { low -= 0.5; high += 0.5; }
     if (axis === 0 && !this.chart.equal) return [low, high];
+    if (this.chart.log) low = Math.max(low, high - DECADES);
     const margin = 0.05 * (high - low);
     return [low - margin, high + margin];
   }
@@ -91,7 +109,7 @@ class LineChart {
       [y0, y1] = widen(y0, y1, box.bottom - box.top);
     }
     const x = (value) => box.left + ((value - x0) / (x1 - x0)) * (box.right - box.left);
-    const y = (value) => box.bottom - ((value - y0) / (y1 - y0)) * (box.bottom - box.top);
+    const y = (value) => box.bottom - ((this.up(value) - y0) / (y1 - y0)) * (box.bottom - box.top);
     return { width, height, box, x0, x1, y0, y1, x, y };
   }
 
@@ -127,7 +145,7 @@ class LineChart {
   }
 
   drawAxes(g, { width, box, x0, x1, y0, y1, x, y }) {
-    const across = ticks(x0, x1, (box.right - box.left) / 80), up = ticks(y0, y1, (box.bottom - box.top) / 40);
+    const across = ticks(x0, x1, (box.right - box.left) / 80), up = this.chart.log ? powers(y0, y1) : ticks(y0, y1, (box.bottom - box.top) / 40);
     g.fillStyle = "#5f6c7b";
     g.textAlign = "center";
     g.textBaseline = "top";
@@ -139,7 +157,7 @@ class LineChart {
     g.textBaseline = "middle";
     for (const value of up.made) {
       stroke(g, box.left, y(value), box.right, y(value), Math.abs(value) < 1e-12 ? "#9aa7b5" : "#e8ecf1");
-      g.fillText(value.toFixed(up.digits), box.left - 5, y(value));
+      g.fillText(up.digits === null ? value.toExponential(0) : value.toFixed(up.digits), box.left - 5, y(value));
     }
     g.strokeStyle = "#9aa7b5";
     g.strokeRect(box.left + 0.5, box.top + 0.5, box.right - box.left - 1, box.bottom - box.top - 1);
@@ -193,5 +211,16 @@ for (const [label, value] of page.facts) {
   const fact = make(document.querySelector("dl"), "div");
   make(fact, "dt", label);
   make(fact, "dd", value);
+}
+for (const table of page.tables) {
+  const section = make(document.querySelector("main"), "section");
+  make(section, "h2", table.title);
+  const body = make(section, "table");
+  const heading = make(body, "tr");
+  for (const column of table.columns) make(heading, "th", column);
+  for (const row of table.rows) {
+    const line = make(body, "tr");
+    for (const cell of row) make(line, "td", cell);
+  }
 }
 for (const chart of page.charts) new LineChart(chart);

@@ -1,15 +1,15 @@
 //! `seamline experiment`: published experiments in simulation.
 
+mod page;
+
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use seamline_cell::experiment::{CORNER_ERRORS, Outcome, ScaraRun, scara};
-use seamline_cell::identify::amplitude_spectrum;
+use seamline_cell::experiment::{Outcome, ScaraRun, scara};
 use serde::Serialize;
 
 use super::modes::number;
 use crate::json_lines::print_line;
-use crate::plot::{Chart, Page, Series};
 
 /// Repeat a published experiment in simulation.
 #[derive(Debug, clap::Args)]
@@ -43,7 +43,7 @@ struct ScaraArguments {
     /// Change of the plant's frequency after the identification, in percent.
     #[arg(long, value_name = "P", default_value_t = 0.0, allow_hyphen_values = true, value_parser = drift)]
     plant_drift_pct: f64,
-    /// Draw feedrates, corners and vibration on a page that opens offline.
+    /// Draw feedrates, corners, vibration and its spectrum on a page that opens offline.
     #[arg(long, value_name = "F.html")]
     plot: Option<PathBuf>,
 }
@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let outcome = scara(0.01 * arguments.plant_drift_pct)?;
     let answer = Answer::of(&outcome);
     if let Some(path) = &arguments.plot {
-        page(&outcome, arguments.plant_drift_pct).write(path)?;
+        page::page(&outcome, &answer, arguments.plant_drift_pct)?.write(path)?;
     }
     if arguments.json { print_line(&answer) } else { Ok(print_table(&answer)?) }
 }
@@ -113,6 +113,10 @@ impl Row {
             corner_errors_mm: run.corners.iter().map(|corner| 1e3 * corner.error).collect(),
         }
     }
+
+    fn worst_corner_mm(&self) -> f64 {
+        self.corner_errors_mm.iter().copied().fold(0.0, f64::max)
+    }
 }
 
 fn print_table(answer: &Answer) -> std::io::Result<()> {
@@ -129,7 +133,6 @@ fn print_table(answer: &Answer) -> std::io::Result<()> {
                 "  prefilter   max g  reduced   RMS g  reduced  residual  path time  greatest corner error"
             )?;
         }
-        let worst = row.corner_errors_mm.iter().copied().fold(0.0, f64::max);
         writeln!(
             out,
             "  {:<9} {:7.4} {:6.2} % {:7.4} {:6.2} % {:7.3} % {:8.3} s {:13.4} mm",
@@ -140,110 +143,8 @@ fn print_table(answer: &Answer) -> std::io::Result<()> {
             row.reduction_rms_pct,
             row.residual_pct,
             row.path_time_s,
-            worst
+            row.worst_corner_mm()
         )?;
     }
     Ok(())
-}
-
-/// Points that a chart of a whole run keeps, at most.
-const KEPT: usize = 1500;
-
-fn page(outcome: &Outcome, drift: f64) -> Page {
-    let identified = &outcome.identified;
-    let facts = vec![
-        ("identified".to_owned(), format!("{:.4} Hz, ζ {:.5}", identified.frequency_hz, identified.damping)),
-        ("plant's drift".to_owned(), format!("{drift} %")),
-    ];
-    let mut charts = measured(outcome);
-    for permitted in CORNER_ERRORS {
-        charts.push(over_time(outcome, permitted, "Feedrate", "mm/s", &speeds));
-    }
-    charts.extend((0..4).map(|corner| close_up(outcome, corner)));
-    for permitted in CORNER_ERRORS {
-        charts.push(over_time(outcome, permitted, "Acceleration of the tool", "g", &accelerations));
-    }
-    Page { title: "SCARA experiment".to_owned(), facts, charts }
-}
-
-/// The vibration that the mode was identified from, and its spectrum.
-fn measured(outcome: &Outcome) -> Vec<Chart> {
-    let signal = &outcome.measured;
-    let values = signal.times.iter().zip(&signal.values).map(|(t, value)| (*t, value / G));
-    let spectrum = amplitude_spectrum(signal).into_iter().take_while(|(f, _)| *f <= 20.0);
-    let vibration = Chart {
-        title: "Vibration left by the bare command, as measured".to_owned(),
-        x: "time, s".to_owned(),
-        y: "acceleration in x, g".to_owned(),
-        series: vec![Series::new("measured", values)],
-        ..Chart::default()
-    };
-    let frequency = outcome.identified.frequency_hz;
-    let spectrum = Chart {
-        title: "Its spectrum".to_owned(),
-        x: "frequency, Hz".to_owned(),
-        y: "amplitude, g".to_owned(),
-        series: vec![Series::new("measured", spectrum.map(|(f, amplitude)| (f, amplitude / G)))],
-        marks: vec![(frequency, format!("{frequency:.3} Hz"))],
-        ..Chart::default()
-    };
-    vec![vibration, spectrum]
-}
-
-fn speeds(run: &ScaraRun) -> Vec<(f64, f64)> {
-    let steps = run.run.trace.windows(2);
-    let speed = |pair: &[seamline_cell::experiment::Sample]| {
-        let (from, to) = (&pair[0], &pair[1]);
-        (to.time, 1e3 * (to.command - from.command).norm() / (to.time - from.time))
-    };
-    steps.map(speed).take_while(|(time, _)| *time <= run.run.path_time + 0.05).collect()
-}
-
-fn accelerations(run: &ScaraRun) -> Vec<(f64, f64)> {
-    run.run.trace.iter().map(|sample| (sample.time, sample.acceleration.norm() / G)).collect()
-}
-
-type Curve<'a> = &'a dyn Fn(&ScaraRun) -> Vec<(f64, f64)>;
-
-fn over_time(outcome: &Outcome, permitted: f64, title: &str, unit: &str, curve: Curve<'_>) -> Chart {
-    let runs = outcome.runs.iter().filter(|run| run.permitted == permitted);
-    let series = runs.map(|run| {
-        let points = curve(run);
-        let every = points.len().div_ceil(KEPT).max(1);
-        Series::new(run.prefilter.name(), points.into_iter().step_by(every))
-    });
-    Chart {
-        title: format!("{title}, corner error {:.0} µm", 1e6 * permitted),
-        x: "time, s".to_owned(),
-        y: unit.to_owned(),
-        series: series.collect(),
-        wide: true,
-        ..Chart::default()
-    }
-}
-
-/// The commanded paths around a corner, for the greater corner error.
-fn close_up(outcome: &Outcome, corner: usize) -> Chart {
-    const CORNERS_MM: [[f64; 2]; 4] = [[140.0, 40.0], [275.0, 100.0], [410.0, 40.0], [360.0, 90.0]];
-    const SHOWN_MM: f64 = 2.5;
-    let [x, y] = CORNERS_MM[corner];
-    let near = |p: &(f64, f64)| (p.0 - x).abs() < SHOWN_MM && (p.1 - y).abs() < SHOWN_MM;
-    let runs = outcome.runs.iter().filter(|run| run.permitted == CORNER_ERRORS[1]);
-    let series = runs.map(|run| {
-        let places = run.run.trace.iter().map(|s| (1e3 * s.command.x, 1e3 * s.command.y));
-        Series::new(run.prefilter.name(), places.filter(near))
-    });
-    let angle = outcome
-        .runs
-        .first()
-        .and_then(|run| run.run.corners.get(corner))
-        .map_or(0.0, |c| c.angle.to_degrees());
-    Chart {
-        title: format!("Corner {} of {angle:.2}°, commanded, 500 µm", corner + 1),
-        x: "x, mm".to_owned(),
-        y: "y, mm".to_owned(),
-        series: series.collect(),
-        equal: true,
-        ..Chart::default()
-    }
 }
