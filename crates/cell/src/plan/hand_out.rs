@@ -83,7 +83,10 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             Err(error) => return Err(self.timing_fault(&route, &error)),
         };
         let (settled, rest) = timing.pieces().split_at(timing.settled());
-        let Some(last) = settled.last().map(TimingPiece::end) else { return Ok(false) };
+        let Some(last) = settled.last().map(TimingPiece::end) else {
+            // Looking farther helps only where there is more to see.
+            return if sight.open { Ok(false) } else { Err(self.timing_fault(&route, &TimingError::NoSpeed)) };
+        };
         let end = if sight.open { last.position } else { route.length() };
         let mut remarks = self.remarks(&route, &timing, end)?;
         self.remark_caps(&mut remarks, &caps, end)?;

@@ -85,7 +85,8 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
             return Err(TimingError::NoSpeed);
         }
         let slow = self.stretched_plain(plain.pieces.clone(), &load)?;
-        let (pieces, kind) = if duration(&slow) < duration(&pieces) * stretch {
+        // A window without a passage stretches to infinity, and has no pieces.
+        let (pieces, kind) = if stretch.is_infinite() || duration(&slow) < duration(&pieces) * stretch {
             (slow, TimingKind::Stretched)
         } else {
             (all_stretched(&pieces, stretch), TimingKind::Optimized)
