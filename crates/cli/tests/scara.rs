@@ -43,9 +43,13 @@ fn folder(name: &str) -> PathBuf {
 
 /// Runs a job of these points with some arguments; its folder and the program's answer.
 fn run(name: &str, points: &str, extra: &[&str]) -> (PathBuf, Output) {
+    run_text(name, &format!("{HEAD}{points}{MOVES}"), extra)
+}
+
+fn run_text(name: &str, text: &str, extra: &[&str]) -> (PathBuf, Output) {
     let out = folder(name);
     let job = out.join("PART.JBI");
-    fs::write(&job, format!("{HEAD}{points}{MOVES}")).expect("a job");
+    fs::write(&job, text).expect("a job");
     let results = out.join("out");
     let output = Command::new(env!("CARGO_BIN_EXE_seamline"))
         .arg("run")
@@ -94,19 +98,11 @@ fn off(rows: &[Row], line: u32, distance: impl Fn([f64; 3]) -> f64) -> f64 {
     places.into_iter().map(distance).fold(0.0, f64::max)
 }
 
-fn judge(out: &Path) {
+/// The figures are within their bounds, and so are the joints: the period is a millisecond, limits are as the cell has them.
+fn within_limits(out: &Path, rows: &[Row]) {
     let summary = fs::read_to_string(out.join("summary.json")).expect("a summary");
     let summary: serde_json::Value = serde_json::from_str(&summary).expect("valid JSON");
     assert_eq!(summary["verdict"], "ok", "{summary}");
-    let rows = recording(out);
-    // Lines of the job file: 23 leads along x, the arc round (450, −60), 27 along y, all at z = −160 mm.
-    assert!(off(&rows, 23, |[_, y, z]| (y + 0.1).abs().max((z + 0.16).abs())) < 1e-6);
-    let round = |[x, y, z]: [f64; 3]| (f64::hypot(x - 0.45, y + 0.06) - 0.04).abs().max((z + 0.16).abs());
-    assert!(off(&rows, ARC, round) < 1e-6);
-    assert!(off(&rows, 27, |[x, _, z]| (x - 0.49).abs().max((z + 0.16).abs())) < 1e-6);
-    let [x, y, z] = tool(rows[rows.len() - 1].joints);
-    assert!((x - 0.49).abs() < 1e-6 && (y - 0.04).abs() < 1e-6 && (z + 0.12).abs() < 1e-6);
-    // The period is a millisecond; limits as the cell has them.
     let limits = [(4.0, 42.0), (6.3, 63.0), (1.0, 10.0), (31.5, 315.0)];
     for (joint, (velocity, acceleration)) in limits.into_iter().enumerate() {
         for k in 2..rows.len() {
@@ -116,6 +112,18 @@ fn judge(out: &Path) {
             assert!(v.abs() <= velocity * 1.06 && a.abs() <= acceleration * 1.01, "joint {joint}: {v} {a}");
         }
     }
+}
+
+fn judge(out: &Path) {
+    let rows = recording(out);
+    within_limits(out, &rows);
+    // Lines of the job file: 23 leads along x, the arc round (450, −60), 27 along y, all at z = −160 mm.
+    assert!(off(&rows, 23, |[_, y, z]| (y + 0.1).abs().max((z + 0.16).abs())) < 1e-6);
+    let round = |[x, y, z]: [f64; 3]| (f64::hypot(x - 0.45, y + 0.06) - 0.04).abs().max((z + 0.16).abs());
+    assert!(off(&rows, ARC, round) < 1e-6);
+    assert!(off(&rows, 27, |[x, _, z]| (x - 0.49).abs().max((z + 0.16).abs())) < 1e-6);
+    let [x, y, z] = tool(rows[rows.len() - 1].joints);
+    assert!((x - 0.49).abs() < 1e-6 && (y - 0.04).abs() < 1e-6 && (z + 0.12).abs() < 1e-6);
 }
 
 #[test]
@@ -150,4 +158,73 @@ fn a_prefilter_needs_a_mode() {
     assert_eq!(output.status.code(), Some(1));
     let expected = "--prefilter zvd: expected a [[flexible_mode]] to make the prefilter for";
     assert!(message(&output).contains(expected), "{}", message(&output));
+}
+
+/// Corners of the test path, in metres.
+const CORNERS: [[f64; 2]; 4] = [[0.14, 0.04], [0.275, 0.1], [0.41, 0.04], [0.36, 0.09]];
+
+/// Least distance of the way from a place, in metres: of the parabola through the nearest sample and its neighbours.
+fn least_distance(way: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
+    let off = |p: &[f64; 2]| f64::hypot(p[0] - x, p[1] - y);
+    let (nearest, _) = way[1..way.len() - 1]
+        .iter()
+        .enumerate()
+        .min_by(|a, b| off(a.1).total_cmp(&off(b.1)))
+        .expect("a way of three samples or more");
+    let [a, b, c] = [way[nearest], way[nearest + 1], way[nearest + 2]];
+    let at =
+        |t: f64| [0, 1].map(|k| b[k] + 0.5 * t * (c[k] - a[k]) + 0.5 * t * t * (a[k] - 2.0 * b[k] + c[k]));
+    (-100..=100).map(|t| off(&at(0.01 * f64::from(t)))).fold(f64::INFINITY, f64::min)
+}
+
+/// The test path of the document, from the first move along it to its end, with the prefilters that the cell's mode asks for: no stop on
+/// the way, no corner missed by more than half a millimetre, and nothing faster than programmed.
+#[test]
+fn the_test_path_is_one_run() {
+    let text = include_str!("../../../examples/jobs/scara_path.JBI");
+    for (prefilter, errors) in
+        [("none", 0.49e-3..=0.5002e-3), ("zv", 0.3e-3..=0.5e-3), ("fir-zvd", 0.3e-3..=0.5e-3)]
+    {
+        let (out, output) = run_text(
+            &format!("scara-path-{prefilter}"),
+            text,
+            &["--cell", "scara", "--prefilter", prefilter],
+        );
+        assert!(output.status.success(), "{}", message(&output));
+        let rows = recording(&out);
+        within_limits(&out, &rows);
+        let on_path = rows.iter().filter(|row| row.line >= 35).map(|row| tool(row.joints));
+        let way: Vec<[f64; 2]> = on_path.map(|[x, y, _]| [x, y]).collect();
+        for corner in CORNERS {
+            let error = least_distance(&way, corner);
+            assert!(errors.contains(&error), "{prefilter}, {corner:?}: {error}");
+        }
+        let speeds: Vec<f64> =
+            way.windows(2).map(|p| f64::hypot(p[1][0] - p[0][0], p[1][1] - p[0][1]) * 1e3).collect();
+        let fastest = speeds.iter().copied().fold(0.0, f64::max);
+        // Joints averaged over a curved way may be a little faster than any of its places.
+        let most = if prefilter == "none" { 1.0001 } else { 1.001 };
+        assert!(fastest < 0.16 * most, "{prefilter}: {fastest}");
+        let moving = |speed: &f64| *speed > 1e-3;
+        let (first, last) = (speeds.iter().position(moving), speeds.iter().rposition(moving));
+        let middle = &speeds[first.expect("motion")..=last.expect("motion")];
+        assert!(middle.iter().all(moving), "{prefilter}: it stops on the way");
+        let [x, y, _] = tool(rows[rows.len() - 1].joints);
+        assert!((x - 0.27).abs() < 1e-6 && y.abs() < 1e-6);
+    }
+}
+
+/// The same path far faster than the joints can follow: it takes longer, and keeps its corners and the limits.
+#[test]
+fn a_path_beyond_the_joints_is_slowed() {
+    let text = include_str!("../../../examples/jobs/scara_path.JBI").replace("V=160.0", "V=600.0");
+    let (out, output) = run_text("scara-fast", &text, &["--cell", "scara"]);
+    assert!(output.status.success(), "{}", message(&output));
+    let rows = recording(&out);
+    within_limits(&out, &rows);
+    let way: Vec<[f64; 2]> = rows.iter().map(|row| tool(row.joints)).map(|[x, y, _]| [x, y]).collect();
+    for corner in CORNERS {
+        let error = least_distance(&way, corner);
+        assert!((0.49e-3..=0.5002e-3).contains(&error), "{corner:?}: {error}");
+    }
 }

@@ -85,7 +85,11 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let (settled, rest) = timing.pieces().split_at(timing.settled());
         let Some(last) = settled.last().map(TimingPiece::end) else {
             // Looking farther helps only where there is more to see.
-            return if sight.open { Ok(false) } else { Err(self.timing_fault(&route, &TimingError::NoSpeed)) };
+            return if sight.open {
+                Ok(false)
+            } else {
+                Err(self.timing_fault(&route, &TimingError::NoSpeed))
+            };
         };
         let end = if sight.open { last.position } else { route.length() };
         let mut remarks = self.remarks(&route, &timing, end)?;
