@@ -10,7 +10,7 @@
 //! | [`record`] | what a run leaves behind: recording, figures, data for plots |
 //! | [`run`] | one job in one cell: check, run, real time |
 //! | [`robot`] | arms whose number of joints is known only at run time: built in, from a cell file, from URDF |
-//! | [`sim`] | simulated servo drives |
+//! | [`sim`] | simulated servo drives and power source |
 
 pub mod cell;
 pub mod experiment;

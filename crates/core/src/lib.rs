@@ -4,6 +4,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`control`] | the cycle: modes, blocks of motion, rate of programme time |
+//! | [`arc`] | what stands between the cycle and the welding power source |
 //! | [`drive`] | what stands between the cycle and the motors |
 //! | [`math`] | elementary functions with or without std |
 //! | [`geometry`] | poses, Euler angles, poses with their derivatives along a path |
@@ -30,6 +31,7 @@
 #[cfg(any(feature = "std", test))]
 extern crate std;
 
+pub mod arc;
 pub mod control;
 pub mod drive;
 pub mod geometry;

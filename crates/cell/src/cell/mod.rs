@@ -39,7 +39,7 @@ pub use robot::{
 pub use sensor::{LostSeam, SeamFilter, Sensor};
 pub use simulation::{LaserErrors, Simulation};
 pub use vibration::{FlexibleMode, Vibration, VibrationError};
-pub use welding::{ArcEnd, ArcPolicy, ArcStart, Voltage, Weave, WeavePattern, WeaveRate, WeaveSide};
+pub use welding::{ArcEnd, ArcPolicy, ArcStart, Weave, WeavePattern, WeaveRate, WeaveSide};
 
 use document::Document;
 use section::Section;

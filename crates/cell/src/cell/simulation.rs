@@ -14,6 +14,10 @@ pub struct Simulation {
     pub velocity_feed_forward: f64,
     /// Step of the simulated encoders in the pulses of [`Joint`](super::Joint); 0 measures exactly.
     pub encoder_step_pulses: f64,
+    /// Seconds from the power source's current to the arc.
+    pub arc_ignition: f64,
+    /// Probability that a strike does not light.
+    pub arc_misfire: f64,
     /// The simulated laser's errors.
     pub laser: LaserErrors,
 }
@@ -42,6 +46,8 @@ impl Simulation {
                 0.0..=100.0,
             )?,
             encoder_step_pulses: section.number("encoder_step_pulses", Unit::Plain, 0.0..=1e6)?,
+            arc_ignition: section.number("arc_ignition_ms", Unit::Milli, 0.0..=10_000.0)?,
+            arc_misfire: section.number("arc_misfire_percent", Unit::Percent, 0.0..=100.0)?,
             laser: LaserErrors {
                 noise: section.number("laser_noise_mm", Unit::Milli, 0.0..=10.0)?,
                 spike: section.number("laser_spike_mm", Unit::Milli, 0.0..=100.0)?,

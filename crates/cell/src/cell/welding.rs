@@ -1,24 +1,16 @@
 //! Arc and weave conditions, and what the cell allows while the arc is on.
 
+use seamline::arc::ArcVoltage;
+
 use super::error::CellError;
 use super::section::{Section, Unit};
 
-/// The arc voltage as welders set it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Voltage {
-    /// Volts.
-    Volts(f64),
-    /// Fraction of the power source's own (synergic) value; 1 is that value.
-    Synergic(f64),
-}
-
-impl Voltage {
-    fn read(table: &mut Section<'_>) -> Result<Self, CellError> {
-        if table.alternative("voltage_v", "voltage_percent")? == "voltage_v" {
-            table.number("voltage_v", Unit::Plain, 5.0..=100.0).map(Self::Volts)
-        } else {
-            table.number("voltage_percent", Unit::Percent, 50.0..=150.0).map(Self::Synergic)
-        }
+/// The arc voltage as welders set it: in volts, or as a share of the synergic value.
+fn voltage(table: &mut Section<'_>) -> Result<ArcVoltage, CellError> {
+    if table.alternative("voltage_v", "voltage_percent")? == "voltage_v" {
+        table.number("voltage_v", Unit::Plain, 5.0..=100.0).map(ArcVoltage::Volts)
+    } else {
+        table.number("voltage_percent", Unit::Percent, 50.0..=150.0).map(ArcVoltage::Synergic)
     }
 }
 
@@ -32,7 +24,7 @@ pub struct ArcStart {
     /// Welding current in A.
     pub current: f64,
     /// Arc voltage.
-    pub voltage: Voltage,
+    pub voltage: ArcVoltage,
     /// Welding speed in m/s.
     pub speed: f64,
     /// Seconds of gas before the arc is struck.
@@ -51,7 +43,7 @@ pub struct ArcEnd {
     /// Crater current in A.
     pub current: f64,
     /// Crater voltage.
-    pub voltage: Voltage,
+    pub voltage: ArcVoltage,
     /// Seconds the torch stands still to fill the crater.
     pub crater_dwell: f64,
     /// Seconds of gas after the arc is out.
@@ -66,7 +58,7 @@ impl ArcStart {
             number,
             name: table.optional_text("name")?.unwrap_or_default(),
             current: table.number("current_a", Unit::Plain, CONDITION_CURRENT_A)?,
-            voltage: Voltage::read(&mut table)?,
+            voltage: voltage(&mut table)?,
             speed: table.number("speed_mm_s", Unit::Milli, 0.1..=500.0)?,
             gas_preflow: table.number("gas_preflow_s", Unit::Plain, 0.0..=60.0)?,
             dwell: table.number("dwell_s", Unit::Plain, 0.0..=60.0)?,
@@ -82,7 +74,7 @@ impl ArcEnd {
             number,
             name: table.optional_text("name")?.unwrap_or_default(),
             current: table.number("current_a", Unit::Plain, CONDITION_CURRENT_A)?,
-            voltage: Voltage::read(&mut table)?,
+            voltage: voltage(&mut table)?,
             crater_dwell: table.number("crater_dwell_s", Unit::Plain, 0.0..=60.0)?,
             gas_postflow: table.number("gas_postflow_s", Unit::Plain, 0.0..=60.0)?,
         };
@@ -191,6 +183,20 @@ pub struct ArcPolicy {
     pub speed_tolerance: f64,
     /// Hold the override at 100 % while the arc is on.
     pub lock_override: bool,
+    /// Seconds that a strike may take.
+    pub strike: f64,
+    /// How often the arc is struck before it counts as not lit.
+    pub strikes: u32,
+    /// Seconds between two strikes.
+    pub strike_pause: f64,
+    /// Seconds without arc that count as its loss.
+    pub loss: f64,
+    /// How far the torch goes back along the bead after an interruption, in metres.
+    pub overlap: f64,
+    /// How fast it goes back, in m/s.
+    pub back_speed: f64,
+    /// Seconds to stand after the arc is lit again.
+    pub restart_dwell: f64,
 }
 
 impl ArcPolicy {
@@ -199,6 +205,13 @@ impl ArcPolicy {
             refuse_slowdown: section.boolean("refuse_slowdown")?,
             speed_tolerance: section.number("speed_tolerance_percent", Unit::Percent, 0.0..=50.0)?,
             lock_override: section.boolean("lock_override")?,
+            strike: section.number("strike_time_s", Unit::Plain, 0.01..=60.0)?,
+            strikes: section.integer("strikes", 1..=20)?,
+            strike_pause: section.number("strike_pause_s", Unit::Plain, 0.0..=60.0)?,
+            loss: section.number("loss_time_ms", Unit::Milli, 0.0..=10_000.0)?,
+            overlap: section.number("overlap_mm", Unit::Milli, 0.0..=100.0)?,
+            back_speed: section.number("back_speed_mm_s", Unit::Milli, 1.0..=200.0)?,
+            restart_dwell: section.number("restart_dwell_s", Unit::Plain, 0.0..=60.0)?,
         };
         section.finish()?;
         Ok(policy)

@@ -5,13 +5,11 @@
 //! |---|---|
 //! | `blend` | segments that overlap in time: where the tool is commanded to be |
 //! | `error` | why there is no run |
-//! | `noise` | what an accelerometer adds |
 //! | `plant` | a flexible tool that follows the command |
 //! | `scara` | the experiment whole: identification, then a run for each prefilter and corner error |
 
 mod blend;
 mod error;
-mod noise;
 mod plant;
 mod scara;
 

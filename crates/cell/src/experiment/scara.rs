@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use seamline::path::Path;
 use seamline::vibration::{Mode, Prefilter};
 
-use super::noise::Noise;
 use super::{ExperimentError, Run, Setup, run, test_path};
 use crate::identify::{IdentifiedMode, Signal, identify};
+use crate::sim::random::Random;
 
 /// The document's prefilters, the bare command first.
 pub const PREFILTERS: [Prefilter; 6] =
@@ -81,9 +81,9 @@ pub fn scara(drift: f64) -> Result<Outcome, ExperimentError> {
 /// What the accelerometer sees after a run without prefilter.
 fn measure(setup: &Setup, path: &[Path]) -> Result<Signal, ExperimentError> {
     let mut signal = run(setup, path, Prefilter::None, &setup.plant, 0.0)?.residual();
-    let mut noise = Noise::new(SEED);
+    let mut noise = Random::new(SEED);
     for value in &mut signal.values {
-        *value += NOISE * noise.next();
+        *value += NOISE * noise.normal();
     }
     Ok(signal)
 }

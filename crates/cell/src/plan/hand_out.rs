@@ -148,7 +148,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             planned.duration += self.run_out();
         }
         out.push(planned);
-        out.extend(piece.after.iter().map(Planned::of));
+        out.extend(piece.after.iter().map(|step| self.aside(step)));
         self.joints = part.joints;
         let end = part.timing.last().map_or(self.run.speed, |piece| piece.end().velocity);
         self.run.speed = if part.rests { 0.0 } else { end };

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use seamline::arc::{ArcSetting, ArcVoltage};
 use seamline::control::{Block, Command, Motion};
 use seamline::geometry::Pose;
 use seamline::otg::{Input, Limits, State, Synchronization, calculate};
@@ -199,7 +200,7 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
 
     /// A step that begins and ends at rest.
     fn plan_alone(&mut self, step: &Step) -> Result<Planned<N>, Problem> {
-        let mut planned = Planned::of(step);
+        let mut planned = self.aside(step);
         match &step.action {
             Action::Move(r#move) => self.joint_move(r#move, &mut planned)?,
             Action::ArcOn(condition) => self.arc_on(condition, &mut planned)?,
@@ -216,6 +217,17 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
     /// How long it takes at the end of a move until the prefilters have let all of it through, in seconds.
     pub(super) fn run_out(&self) -> f64 {
         self.run.smear.map_or(0.0, |smear| smear.length)
+    }
+
+    /// A step that takes no time and leaves the motion as it is.
+    pub(super) fn aside(&self, step: &Step) -> Planned<N> {
+        let mut planned = Planned::of(step);
+        if let Action::ArcSet(condition) = &step.action {
+            let file = condition.file.and_then(|number| self.cell.arc_start(number));
+            let setting = arc_setting(condition, file.map(|file| (file.current, file.voltage)));
+            planned.commands.push(Command::ArcSetting(setting));
+        }
+        planned
     }
 
     fn next_segment(&mut self) -> u32 {
@@ -247,8 +259,9 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         let file = file.transpose()?;
         let preflow = file.map_or(0.0, |file| file.gas_preflow);
         let hold = condition.seconds.or(file.map(|file| file.dwell)).unwrap_or(0.0);
+        let setting = arc_setting(condition, file.map(|file| (file.current, file.voltage)));
         self.dwell(preflow, planned);
-        planned.commands.push(Command::Arc { on: true });
+        planned.commands.push(Command::Arc { on: true, setting });
         self.arc = true;
         self.dwell(hold, planned);
         Ok(())
@@ -260,9 +273,12 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             let missing = Problem::UnknownCondition { kind: "AEF", number, table: "[[arc_end]]" };
             self.cell.arc_end(number).ok_or(missing)
         });
-        let crater = condition.seconds.or(file.transpose()?.map(|file| file.crater_dwell)).unwrap_or(0.0);
+        let file = file.transpose()?;
+        let crater = condition.seconds.or(file.map(|file| file.crater_dwell)).unwrap_or(0.0);
+        let setting = arc_setting(condition, file.map(|file| (file.current, file.voltage)));
+        planned.commands.push(Command::ArcSetting(setting));
         self.dwell(crater, planned);
-        planned.commands.push(Command::Arc { on: false });
+        planned.commands.push(Command::Arc { on: false, setting });
         self.arc = false;
         Ok(())
     }
@@ -445,4 +461,14 @@ fn joint_input<const N: usize>(
     let mut input = Input::new(State::at_rest(*start), State::at_rest(*target), motion);
     input.synchronization = [Synchronization::Time; N];
     input
+}
+
+/// What the power source is set to: what the line says, otherwise the cell's condition.
+pub(super) fn arc_setting(condition: &ArcCondition, file: Option<(f64, ArcVoltage)>) -> ArcSetting {
+    let volts = condition.voltage.map(ArcVoltage::Volts);
+    let percent = condition.voltage_percent.map(|percent| ArcVoltage::Synergic(percent / 100.0));
+    ArcSetting {
+        current: condition.current.or(file.map(|(current, _)| current)).unwrap_or(ArcSetting::NONE.current),
+        voltage: volts.or(percent).or(file.map(|(_, voltage)| voltage)).unwrap_or(ArcSetting::NONE.voltage),
+    }
 }

@@ -6,7 +6,7 @@ use seamline::safety::Fault;
 use super::clock::MonotonicClock;
 use super::machine::Machine;
 use crate::record::TimeFigures;
-use crate::sim::SimulatedDrive;
+use crate::sim::{SimulatedArc, SimulatedDrive};
 
 /// What the supervisor needs to know of a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +25,7 @@ impl Beat {
         match self.mode {
             Mode::Standstill | Mode::Disabled => true,
             Mode::Fault => self.at_rest,
-            Mode::Running | Mode::Holding | Mode::Stopping => false,
+            Mode::Running | Mode::Holding | Mode::Resuming | Mode::Backing | Mode::Stopping => false,
         }
     }
 
@@ -51,7 +51,8 @@ pub(super) struct LoopFigures {
     pub(super) remarks: Vec<String>,
 }
 
-pub(super) type SimulatedMachine<const N: usize, K> = Machine<N, K, SimulatedDrive<N>, MonotonicClock>;
+pub(super) type SimulatedMachine<const N: usize, K> =
+    Machine<N, K, SimulatedDrive<N>, SimulatedArc, MonotonicClock>;
 
 /// Drives power up in the first cycle, and the job starts in the second.
 pub(super) fn start_event(cycle: u64) -> Option<Event> {

@@ -33,6 +33,11 @@ pub fn describe(fault: &Fault, joints: &[JointInfo]) -> String {
         Fault::Drive(DriveFault::Axis(axis, code)) => format!("drive of joint {}: alarm {code}", joint(axis)),
         Fault::Overrun { count } => format!("{count} cycles in a row were late"),
         Fault::EmergencyStop => "emergency stop".into(),
+        Fault::ArcNotLit { tries: 1 } => "the arc did not light".into(),
+        Fault::ArcNotLit { tries } => format!("the arc did not light in {tries} strikes"),
+        Fault::ArcLost { seconds } => {
+            format!("the arc went out ({:.0} ms without current)", 1000.0 * seconds)
+        }
     }
 }
 

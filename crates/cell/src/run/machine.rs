@@ -1,8 +1,9 @@
 //! The controller with its drives, and what goes in and out once per period.
 
 use rtrb::Consumer;
+use seamline::arc::ArcSource;
 use seamline::control::{
-    Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, JointPrefilter,
+    ArcRules, Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, JointPrefilter,
     PrefilterEntry, STAGES, ServoModel, StageClock,
 };
 use seamline::drive::Drive;
@@ -36,6 +37,15 @@ struct Times {
     whole: TimeHistogram,
 }
 
+/// What the controller is connected to.
+#[derive(Debug)]
+pub struct Devices<D, A> {
+    /// The servo drives.
+    pub drive: D,
+    /// The welding power source.
+    pub arc: A,
+}
+
 /// Memory of the prefilters, from the heap before the first cycle.
 type Memory<const N: usize> = Box<[PrefilterEntry<N>]>;
 
@@ -50,11 +60,11 @@ pub fn joint_prefilter<const N: usize>(cell: &Cell) -> Result<JointPrefilter<N, 
     JointPrefilter::try_new(cell.vibration.kernels().iter().map(stage), period)
 }
 
-/// A controller, its drives and its queue. [`Machine::cycle`] neither allocates nor locks.
+/// A controller, its devices and its queue. [`Machine::cycle`] neither allocates nor locks.
 #[derive(Debug)]
-pub struct Machine<const N: usize, K, D, C> {
+pub struct Machine<const N: usize, K, D, A, C> {
     cycle: Cycle<N, K, Memory<N>>,
-    drive: D,
+    devices: Devices<D, A>,
     clock: C,
     queue: Queue<N>,
     input: CycleInput<N>,
@@ -64,7 +74,7 @@ pub struct Machine<const N: usize, K, D, C> {
     times: Times,
 }
 
-impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, C: StageClock> Machine<N, K, D, C> {
+impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock> Machine<N, K, D, A, C> {
     /// A disabled controller whose arm stands at home, on a queue that a planner fills.
     ///
     /// # Errors
@@ -72,7 +82,7 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, C: StageClock> Machine<N, K
     pub fn new(
         cell: &Cell,
         arm: &Arm<N, K>,
-        drive: D,
+        devices: Devices<D, A>,
         clock: C,
         queue: Consumer<Command<N>>,
     ) -> Result<Self, StageError> {
@@ -89,11 +99,12 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, C: StageClock> Machine<N, K
                 following_error: arm.following_error,
             },
             overruns_in_row: OVERRUNS_IN_ROW,
+            arc: arc_rules(cell),
         };
         let prefilter = joint_prefilter(cell)?;
         Ok(Self {
             cycle: Cycle::with_prefilter(config, arm.kinematics.clone(), prefilter, arm.home),
-            drive,
+            devices,
             clock,
             queue: Queue(queue),
             input: CycleInput {
@@ -102,6 +113,7 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, C: StageClock> Machine<N, K
                 event: None,
                 fault: None,
                 late: false,
+                arc_burning: Some(false),
             },
             period: cell.cycle.period,
             count: 0,
@@ -130,9 +142,9 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, C: StageClock> Machine<N, K
         self.input.late = late;
     }
 
-    /// The drives.
-    pub fn drive_mut(&mut self) -> &mut D {
-        &mut self.drive
+    /// What it is connected to.
+    pub fn devices_mut(&mut self) -> &mut Devices<D, A> {
+        &mut self.devices
     }
 
     /// Time between two cycles in seconds.
@@ -157,7 +169,8 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, C: StageClock> Machine<N, K
         }
         self.input.event = None;
         self.input.fault = None;
-        self.input.measured = self.drive.exchange(&output.command, self.period);
+        self.input.measured = self.devices.drive.exchange(&output.command, self.period);
+        self.input.arc_burning = self.devices.arc.exchange(&output.arc, self.period);
         let sample = self.sample(&output);
         self.count += 1;
         self.last_tcp = output.status.base_from_tcp;
@@ -175,7 +188,7 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, C: StageClock> Machine<N, K
             override_rate: status.rate,
             tcp: status.base_from_tcp,
             tcp_speed: travelled.norm() / self.period,
-            arc: output.arc,
+            arc: output.arc.on,
             ..Sample::at_rest()
         };
         let joints = N.min(MAX_JOINTS);
@@ -190,5 +203,22 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, C: StageClock> Machine<N, K
     pub fn stage_times(&self) -> Vec<TimeFigures> {
         let stages = self.times.stages.iter().zip(STAGES).map(|(histogram, name)| histogram.figures(name));
         stages.chain([self.times.whole.figures("cycle")]).collect()
+    }
+}
+
+/// How the cell wants the arc handled.
+#[must_use]
+pub fn arc_rules(cell: &Cell) -> ArcRules {
+    let policy = &cell.arc;
+    ArcRules {
+        dry: false,
+        strike: policy.strike,
+        strikes: policy.strikes,
+        pause: policy.strike_pause,
+        loss: policy.loss,
+        overlap: policy.overlap,
+        back_speed: policy.back_speed,
+        restart_dwell: policy.restart_dwell,
+        lock_override: policy.lock_override,
     }
 }

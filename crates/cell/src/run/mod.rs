@@ -27,5 +27,5 @@ pub use check::{CheckReport, Finding, check};
 pub use clock::{MonotonicClock, thread_cpu_ns};
 pub use error::{Place, RunError};
 pub use faults::describe;
-pub use machine::{Machine, joint_prefilter};
+pub use machine::{Devices, Machine, arc_rules, joint_prefilter};
 pub use session::{Progress, RunOptions, RunReport, run};

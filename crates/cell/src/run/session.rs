@@ -10,7 +10,7 @@ use super::beat::{Beat, LoopFigures, SimulatedMachine, start_event};
 use super::check::{CheckReport, check};
 use super::clock::MonotonicClock;
 use super::error::RunError;
-use super::machine::Machine;
+use super::machine::{Devices, Machine};
 use super::realtime;
 use super::supervisor::Supervisor;
 use super::walk::Walk;
@@ -18,7 +18,7 @@ use crate::cell::{Cell, Vibration};
 use crate::job::JobSet;
 use crate::plan::{Arm, PlanningArm};
 use crate::record::{Acceptance, Findings, JointInfo, Outcome, Recorder, RunInfo, SampleSender, Summary};
-use crate::sim::SimulatedDrive;
+use crate::sim::{SimulatedArc, SimulatedDrive};
 
 /// Commands between planner and cycle.
 const QUEUE: usize = 64;
@@ -83,7 +83,8 @@ pub fn run<const N: usize, K: PlanningArm<N> + Send>(
     fs::create_dir_all(&options.out).map_err(file)?;
     let (samples, recorder) = Recorder::start(&path, &info).map_err(file)?;
     let (producer, consumer) = RingBuffer::new(QUEUE);
-    let mut machine = Machine::new(cell, arm, drive, MonotonicClock::default(), consumer)?;
+    let devices = Devices { drive, arc: SimulatedArc::from_cell(cell) };
+    let mut machine = Machine::new(cell, arm, devices, MonotonicClock::default(), consumer)?;
     machine.set_override(options.speed_override);
     let walk = Walk::new(jobs, cell, arm)?;
     let mut supervisor = Supervisor::new(walk, producer, reads_inputs, recorder, info.joints.clone());

@@ -1,7 +1,10 @@
 //! Simulated stand-ins for the machine: deterministic, without clock and thread.
 
+mod arc;
 mod drive;
+pub(crate) mod random;
 
+pub use arc::{ArcFault, SimulatedArc};
 pub use drive::{DriveError, InjectedFault, Servo, SetupError, SimulatedDrive};
 
 use seamline::drive::{Drive, DriveFault, JointCommand};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use seamline::control::{
-    Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, Mode, NoClock,
+    ArcRules, Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, Mode, NoClock,
     PrefilterEntry, ServoModel,
 };
 use seamline::drive::Drive;
@@ -140,6 +140,7 @@ pub(crate) fn config<const N: usize, K: PlanningArm<N>>(cell: &Cell, arm: &Arm<N
             following_error: arm.following_error,
         },
         overruns_in_row: 10,
+        arc: ArcRules::PLAIN,
     }
 }
 
@@ -179,6 +180,7 @@ impl<const N: usize, K: PlanningArm<N>> Bench<N, K> {
                 event: None,
                 fault: None,
                 late: false,
+                arc_burning: None,
             },
             period: cell.cycle.period,
         };

@@ -6,12 +6,13 @@ use std::cell::Cell as Flag;
 
 use crate::bench::{Ar2010, flexible, move_to};
 use rtrb::RingBuffer;
+use seamline::arc::ArcSetting;
 use seamline::control::{Command, Event, Mode};
 use seamline_cell::cell::Cell;
 use seamline_cell::job::{MovePath, Speed};
 use seamline_cell::plan::{Arm, Planner};
-use seamline_cell::run::{Machine, MonotonicClock};
-use seamline_cell::sim::SimulatedDrive;
+use seamline_cell::run::{Devices, Machine, MonotonicClock};
+use seamline_cell::sim::{SimulatedArc, SimulatedDrive};
 
 thread_local! {
     static ARMED: Flag<bool> = const { Flag::new(false) };
@@ -57,7 +58,7 @@ fn commands(cell: &Cell, arm: &Ar2010) -> Vec<Command<6>> {
         };
         let step = planner.plan(&step).unwrap();
         planned += step.duration + 0.05;
-        all.push(Command::Arc { on: k % 2 == 0 });
+        all.push(Command::Arc { on: k % 2 == 0, setting: ArcSetting::NONE });
         all.extend(step.commands);
         all.push(Command::Dwell { line: k, segment: k, duration: 0.05 });
         if planned > 1.1 * CYCLES as f64 * cell.cycle.period {
@@ -83,7 +84,8 @@ fn run(cell: &Cell) {
     let (mut producer, consumer) = RingBuffer::new(commands.len());
     commands.into_iter().for_each(|command| producer.push(command).unwrap());
     let drive = SimulatedDrive::<6>::from_cell(cell).unwrap();
-    let mut machine = Machine::new(cell, &arm, drive, MonotonicClock::default(), consumer).unwrap();
+    let devices = Devices { drive, arc: SimulatedArc::from_cell(cell) };
+    let mut machine = Machine::new(cell, &arm, devices, MonotonicClock::default(), consumer).unwrap();
     machine.request(Event::Enable);
     machine.cycle();
     machine.request(Event::Start);
@@ -102,8 +104,8 @@ fn run(cell: &Cell) {
     }
     ARMED.set(false);
     assert_eq!(COUNT.get(), 0, "allocations and releases in {CYCLES} cycles");
-    // It did run, pause and go on.
-    assert!(modes[1] > 900_000 && modes[0] > 20_000, "{modes:?}");
+    // It did run, pause and go on, which takes longer behind prefilters.
+    assert!(modes[1] > 850_000 && modes[0] > 20_000, "{modes:?}");
     let times = machine.stage_times();
     println!("computing time of a cycle, µs: {:?}", times.last());
 }

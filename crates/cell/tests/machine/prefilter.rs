@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use seamline::arc::ArcSetting;
 use seamline::control::{Command, CycleOutput, Event, Mode};
 use seamline::safety::Fault;
 use seamline_cell::cell::Cell;
@@ -41,7 +42,7 @@ impl Run {
             commands.push(Command::Marker(number));
             if number == LINE {
                 commands.push(Command::Dwell { line: 20, segment: 20, duration: 0.05 });
-                commands.extend([Command::Arc { on: true }, Command::Arc { on: false }]);
+                commands.extend([true, false].map(|on| Command::Arc { on, setting: ArcSetting::NONE }));
             }
         }
         commands.push(Command::End);
@@ -151,7 +152,7 @@ fn limits_hold_whatever_is_asked_for() {
     }
 }
 
-/// Halts at random instants, from the prefiltered command: each joint stops within its limits, and after a reset the controller starts from
+/// Halts at random instants, from the prefiltered command: each joint stops within its limits, and after a reset the controller holds
 /// where it stands.
 #[test]
 fn a_halt_begins_where_the_prefilter_has_come() {
@@ -171,7 +172,7 @@ fn a_halt_begins_where_the_prefilter_has_come() {
         run.assert_within_limits(&format!("{name} {case}"));
         run.bench.input.event = Some(Event::Reset);
         let reset = run.cycle();
-        assert_eq!((reset.status.mode, reset.command.position), (Mode::Standstill, rest.command.position));
+        assert_eq!((reset.status.mode, reset.command.position), (Mode::Holding, rest.command.position));
         assert!(run.cycle().status.at_rest);
     }
 }
@@ -194,7 +195,8 @@ fn what_follows_a_stop_begins_at_true_rest() {
         assert_eq!(end, end_of(&bare, 2).1, "{name}");
         assert_eq!(run.outputs[at - 1].command.position, end, "{name}: at rest before the marker");
         let dwell: Vec<_> = run.outputs.iter().filter(|output| output.status.line == 20).collect();
-        assert_eq!(dwell.len(), 50, "{name}");
+        // And one cycle, in which the arc is asked for.
+        assert_eq!(dwell.len(), 51, "{name}");
         assert!(dwell.iter().all(|output| output.command.position == end));
         // The line takes as much longer as what is inside takes to run out, give or take the cycles at its ends.
         let time = |run: &Run| run.outputs.iter().filter(|output| output.status.line == LINE).count();

@@ -1,5 +1,6 @@
 //! Blocks: what a planner hands to the cycle, piece by piece, through a bounded queue.
 
+use crate::arc::ArcSetting;
 use crate::geometry::{Pose, PoseJet};
 use crate::otg::Trajectory;
 use crate::path::{Path, PathState, TimingPiece};
@@ -25,11 +26,15 @@ pub enum Command<const N: usize> {
         /// Seconds.
         duration: f64,
     },
-    /// Light the arc or put it out.
+    /// Light the arc or put it out. The program goes on when it burns.
     Arc {
         /// Whether it burns from here on.
         on: bool,
+        /// What the power source is set to.
+        setting: ArcSetting,
     },
+    /// From here on the power source is set to this.
+    ArcSetting(ArcSetting),
     /// A place in the program that the status reports when it is passed. Numbers rise.
     Marker(u32),
     /// The program ends here.

@@ -1,13 +1,16 @@
 //! The cycle: four tiers from the measured joints to the next command, with the prefilters between the third and the fourth.
 
+use super::arc::{Arc, ArcRules};
 use super::feedback::{Observer, ServoModel};
-use super::halt::Halt;
 use super::mode::{Event, Mode};
+use super::off_path::OffPath;
 use super::prefilter::{JointPrefilter, PrefilterEntry, Progress};
-use super::program::{Arm, CommandSource, Program};
+use super::program::{Arm, CommandSource, Follows, Program};
 use super::rate::RateLimits;
+use super::resume::Resume;
 use super::telemetry::{CycleOutput, StageClock, Status};
 use super::trail::Mark;
+use crate::arc::ArcCommand;
 use crate::drive::{DriveFault, JointCommand};
 use crate::geometry::Pose;
 use crate::kinematics::{JointJet, Kinematics};
@@ -31,6 +34,8 @@ pub struct CycleConfig<const N: usize> {
     pub servo: ServoModel<N>,
     /// Late cycles in a row that are borne; one more is a fault.
     pub overruns_in_row: u32,
+    /// How the arc is handled.
+    pub arc: ArcRules,
 }
 
 /// What comes into a cycle.
@@ -46,29 +51,41 @@ pub struct CycleInput<const N: usize> {
     pub fault: Option<Fault>,
     /// This cycle began late.
     pub late: bool,
+    /// Whether the arc burns, as the power source says ([`crate::arc::ArcSource`]).
+    pub arc_burning: Option<bool>,
 }
 
 /// The controller's state from cycle to cycle. `M` is the memory of its prefilters.
 #[derive(Debug, Clone)]
 pub struct Cycle<const N: usize, K, M = [PrefilterEntry<N>; 0]> {
-    config: CycleConfig<N>,
-    kinematics: K,
-    mode: Mode,
+    pub(super) config: CycleConfig<N>,
+    pub(super) kinematics: K,
+    pub(super) mode: Mode,
     fault: Option<Fault>,
     /// The severest stop that the faults demand.
     stop: Option<StopCategory>,
-    /// The job can go on from where the arm stands.
-    on_path: bool,
-    program: Program<N>,
+    /// There is a job that has begun and can go on.
+    job: bool,
+    /// The arm stands or moves on the job's path.
+    pub(super) on_path: bool,
+    pub(super) program: Program<N>,
     prefilter: JointPrefilter<N, M>,
-    /// The place of the program that the arm has come to, and the rate at which it goes on.
+    /// The place of the program that the arm has come to, the way of the tool up to there, and the rate at which it goes on.
     mark: Mark,
+    tool_way: f64,
     rate: f64,
-    halt: Option<Halt<N>>,
+    pub(super) off_path: Option<OffPath<N>>,
+    /// Where the resumption stands, in [`Mode::Resuming`].
+    pub(super) resume: Resume,
+    pub(super) arc: Arc,
+    /// Way of the tool at which the arc was last seen to burn.
+    pub(super) bead_end: f64,
     observer: Observer<N>,
     envelope: Envelope<N>,
-    command: JointCommand<N>,
+    pub(super) command: JointCommand<N>,
     base_from_tcp: Pose,
+    /// The joints as last measured.
+    measured: [f64; N],
     overruns: u64,
     overruns_in_row: u32,
 }
@@ -94,8 +111,8 @@ where
         mut prefilter: JointPrefilter<N, M>,
         position: [f64; N],
     ) -> Self {
-        prefilter.reset(position, Mark::default());
         let CycleConfig { period, limits, workspace, flange_from_tcp, servo, .. } = config;
+        prefilter.reset(position, &Progress::default());
         // A whole number of periods, so that a recovery of the rate ends with a cycle.
         let spacing = period * crate::math::float::ceil(SAMPLE_SPACING / period - 1e-9).max(1.0);
         Self {
@@ -103,17 +120,23 @@ where
             mode: Mode::Disabled,
             fault: None,
             stop: None,
+            job: false,
             on_path: false,
             program: Program::at_rest(position, flange_from_tcp, spacing),
             prefilter,
             mark: Mark::default(),
+            tool_way: 0.0,
             rate: 0.0,
-            halt: None,
+            off_path: None,
+            resume: Resume::Settle,
+            arc: Arc::Out,
+            bead_end: 0.0,
             observer: Observer::at_rest(position, servo, period),
             envelope: Envelope::at_rest(position, limits, workspace, period),
             command: JointCommand::at_rest(position),
             base_from_tcp: kinematics.forward(&position) * flange_from_tcp,
             kinematics,
+            measured: position,
             overruns: 0,
             overruns_in_row: 0,
         }
@@ -144,6 +167,7 @@ where
         let joints = advanced.and_then(|()| self.program.joints(&self.kinematics));
         let t3 = clock.now_ns();
         self.command(joints);
+        self.arc(input.arc_burning);
         let t4 = clock.now_ns();
         // A clock that jumps back must not stop the cycle: such a stage took no time.
         let stage = |from: u64, to: u64| u32::try_from(to.saturating_sub(from)).unwrap_or(u32::MAX);
@@ -152,41 +176,84 @@ where
     }
 
     /// Takes an event; false where it means nothing now.
-    fn apply(&mut self, event: Event) -> bool {
-        if event == Event::Reset && !self.is_at_rest() {
+    pub(super) fn apply(&mut self, event: Event) -> bool {
+        let refused = match event {
+            Event::Reset => !self.is_at_rest(),
+            // A stop off the path is carried out first; backing needs the path.
+            Event::Resume | Event::BackUp if !self.on_path => event == Event::BackUp || !self.is_at_rest(),
+            _ => false,
+        };
+        if refused {
             return false;
         }
-        let Some(next) = self.mode.after(event, self.on_path) else { return false };
+        let Some(next) = self.mode.after(event, self.job) else { return false };
         match (self.mode, next) {
             (Mode::Disabled, Mode::Standstill) => self.restart(),
-            (Mode::Fault, Mode::Standstill | Mode::Holding) => {
-                (self.fault, self.stop) = (None, None);
-                self.overruns_in_row = 0;
-                self.observer.restart(self.command.position);
-                if next == Mode::Standstill {
-                    self.restart();
-                }
-            }
+            (Mode::Fault, Mode::Standstill | Mode::Holding) => self.reset(next),
             (Mode::Holding, Mode::Disabled) | (Mode::Running | Mode::Stopping, Mode::Standstill) => {
                 self.restart()
             }
-            (_, Mode::Running) => self.on_path = true,
+            (Mode::Standstill, Mode::Running) => (self.job, self.on_path) = (true, true),
+            (Mode::Holding, Mode::Resuming) => self.begin_to_resume(),
+            (Mode::Holding, Mode::Backing) => self.resume = Resume::Settle,
+            (Mode::Resuming, Mode::Holding | Mode::Stopping) if self.off_path.is_some() => {
+                self.off_path = Some(OffPath::stop(&self.command, &self.config.limits));
+            }
             _ => {}
         }
         self.mode = next;
         true
     }
 
+    /// A fault is acknowledged.
+    fn reset(&mut self, next: Mode) {
+        if self.stop == Some(StopCategory::Category0) {
+            // Without power the arm may have moved: the command goes on from where it is.
+            self.command = JointCommand::at_rest(self.measured);
+            self.envelope.restart(self.command.position);
+        }
+        (self.fault, self.stop) = (None, None);
+        self.overruns_in_row = 0;
+        self.observer.restart(self.command.position);
+        if next == Mode::Standstill {
+            self.restart();
+        }
+    }
+
     /// No program; everything starts anew from where the arm was last commanded to be.
     fn restart(&mut self) {
         let position = self.command.position;
-        self.halt = None;
-        self.on_path = false;
+        self.off_path = None;
+        (self.job, self.on_path) = (false, false);
         self.program.clear(position);
-        (self.mark, self.rate) = (self.program.place().mark, 0.0);
-        self.prefilter.reset(position, self.mark);
+        self.bead_end = 0.0;
+        self.meet_program(position);
         self.envelope.restart(position);
         self.observer.restart(position);
+    }
+
+    /// The arm is at rest where the program is.
+    fn meet_program(&mut self, position: [f64; N]) {
+        let progress = self.progress();
+        let Progress { mark, tool_way, rate, .. } = progress;
+        (self.mark, self.tool_way, self.rate) = (mark, tool_way, rate);
+        self.prefilter.reset(position, &progress);
+    }
+
+    /// The power source: struck where the program wants an arc and the arm is where it belongs.
+    fn arc(&mut self, burning: Option<bool>) {
+        let here = match self.mode {
+            Mode::Running => true,
+            Mode::Resuming => self.resume.wants_arc(),
+            _ => false,
+        };
+        let wanted = here && self.mark.arc;
+        if let Err(fault) = self.arc.step(wanted, burning, &self.config.arc, self.config.period) {
+            self.raise(fault);
+        }
+        if self.arc.is_seen() {
+            self.bead_end = self.bead_end.max(self.tool_way);
+        }
     }
 
     /// Tier 1: drives, overruns and faults from outside.
@@ -209,6 +276,9 @@ where
                 }
             }
             Ok(measured) => {
+                if measured.iter().all(|q| q.is_finite()) {
+                    self.measured = measured;
+                }
                 if let Err(fault) = self.observer.update(&self.command.position, &measured) {
                     self.raise(fault);
                 }
@@ -218,45 +288,101 @@ where
 
     /// Tier 2: programme time.
     fn target(&mut self, speed_override: f64, source: &mut impl CommandSource<N>) -> Result<(), Fault> {
-        if self.halt.is_some() || !self.on_path {
+        if self.mode == Mode::Resuming {
+            self.resume()?;
+        }
+        if self.off_path.is_some() || !self.on_path {
             return Ok(());
         }
-        // A wrong override is none: NaN stops.
-        let speed_override = if speed_override.is_finite() { speed_override.clamp(0.0, 1.0) } else { 0.0 };
-        let goal = if self.mode == Mode::Running { speed_override } else { 0.0 };
-        let MotionLimits { acceleration, jerk, .. } = self.config.limits;
-        let limits = RateLimits { acceleration, jerk };
-        let arm = match (self.prefilter.is_none(), self.prefilter.is_drained()) {
-            (true, _) => Arm::AtOnce,
-            (false, true) => Arm::Arrived,
-            (false, false) => Arm::Behind,
-        };
-        self.program.advance(goal, source, &self.kinematics, &limits, self.config.period, arm)
+        let speed = self.speed(speed_override);
+        match self.mode {
+            Mode::Running => self.advance(speed, source),
+            Mode::Backing => self.back_up(speed),
+            Mode::Resuming if self.resume == Resume::Back => self.back_along_the_bead(speed),
+            _ if self.program.runs_backward() => self.retreat(0.0),
+            _ => self.advance(0.0, source),
+        }
     }
 
-    /// Tier 4, after the joints of tier 3: the command, if the envelope lets it pass; otherwise a halt.
+    /// The rate that is asked for: 0 … 1.
+    fn speed(&self, speed_override: f64) -> f64 {
+        if self.config.arc.lock_override && self.arc.burns() {
+            1.0
+        } else if speed_override.is_finite() {
+            speed_override.clamp(0.0, 1.0)
+        } else {
+            // A wrong override is none.
+            0.0
+        }
+    }
+
+    fn rate_limits(&self) -> RateLimits<N> {
+        let MotionLimits { acceleration, jerk, .. } = self.config.limits;
+        RateLimits { acceleration, jerk }
+    }
+
+    fn advance(&mut self, goal: f64, source: &mut impl CommandSource<N>) -> Result<(), Fault> {
+        let (limits, period) = (self.rate_limits(), self.config.period);
+        let arm = self.arm(self.arc.burns());
+        self.program.advance(goal, source, &self.kinematics, &limits, period, arm)
+    }
+
+    pub(super) fn retreat(&mut self, goal: f64) -> Result<(), Fault> {
+        let (limits, arm) = (self.rate_limits(), self.arm(false));
+        self.program.retreat(goal, &self.kinematics, &limits, self.config.period, arm)
+    }
+
+    /// How the arm follows the program.
+    fn arm(&self, arc_burns: bool) -> Arm {
+        let motion = match (self.prefilter.is_none(), self.prefilter.is_drained()) {
+            (true, _) => Follows::AtOnce,
+            (false, true) => Follows::Arrived,
+            (false, false) => Follows::Behind,
+        };
+        Arm { motion, arc_burns }
+    }
+
+    /// Programme time runs backward from here on, or forward again.
+    pub(super) fn turn(&mut self, backward: bool) {
+        self.program.turn(backward);
+        self.meet_program(self.command.position);
+    }
+
+    /// The arm is back where the program is, after a way off the path.
+    pub(super) fn come_back(&mut self) {
+        (self.off_path, self.on_path) = (None, true);
+        self.meet_program(self.command.position);
+    }
+
+    /// Tier 4, after the joints of tier 3: the command, if the envelope lets it pass; otherwise a stop off the path.
     fn command(&mut self, joints: Result<JointJet<N>, Fault>) {
         if self.mode == Mode::Disabled || self.stop == Some(StopCategory::Category0) {
             self.command = JointCommand::at_rest(self.command.position);
             return;
         }
-        if self.halt.is_none() {
-            let command = joints.map(|jet| self.shaped(&jet)).and_then(|command| {
+        let wanted = match &mut self.off_path {
+            None if self.on_path => joints.map(|jet| self.shaped(&jet)),
+            None => Ok(JointCommand::at_rest(self.command.position)),
+            Some(way) => Ok(way.step(self.config.period)),
+        };
+        let stops = self.off_path.is_some_and(|way| !way.returns());
+        let judged = wanted.and_then(|command| {
+            let tcp = self.kinematics.forward(&command.position) * self.program.place().flange_from_tcp;
+            // A stop is the last resort.
+            let judged = self.envelope.judge(&command.position, &tcp.translation.vector);
+            if stops { Ok((command, tcp)) } else { judged.map(|()| (command, tcp)) }
+        });
+        match judged {
+            Ok((command, tcp)) => self.accept(command, tcp),
+            Err(fault) => {
+                self.raise(fault);
+                let Some(stop) = &mut self.off_path else { return };
+                let command = stop.step(self.config.period);
                 let tcp = self.kinematics.forward(&command.position) * self.program.place().flange_from_tcp;
-                self.envelope.judge(&command.position, &tcp.translation.vector).map(|()| (command, tcp))
-            });
-            match command {
-                Ok((command, tcp)) => {
-                    self.accept(command, tcp);
-                    return self.after_motion();
-                }
-                Err(fault) => self.raise(fault),
+                self.accept(command, tcp);
             }
         }
-        let Some(halt) = &mut self.halt else { return };
-        let command = halt.step(self.config.period);
-        let tcp = self.kinematics.forward(&command.position) * self.program.place().flange_from_tcp;
-        self.accept(command, tcp);
+        self.after_motion();
     }
 
     fn accept(&mut self, command: JointCommand<N>, tcp: Pose) {
@@ -268,16 +394,21 @@ where
     /// The command in real time, as the prefilters let it through.
     fn shaped(&mut self, jet: &JointJet<N>) -> JointCommand<N> {
         let command = self.in_time(jet);
-        let (way, since) = self.program.way();
-        let (mark, rate) = (self.program.place().mark, self.program.rate().value());
-        let shaped = self.prefilter.update(&command, &Progress { mark, since, way, rate });
-        (self.mark, self.rate) = (shaped.mark, shaped.rate);
+        let shaped = self.prefilter.update(&command, &self.progress());
+        (self.mark, self.tool_way, self.rate) = (shaped.mark, shaped.tool_way, shaped.rate);
         shaped.command
+    }
+
+    /// Where the program is.
+    fn progress(&self) -> Progress {
+        let (course, since) = self.program.course();
+        let (mark, rate) = (self.program.place().mark, self.program.rate().value());
+        Progress { mark, since, course, tool_way: self.program.way().tool, rate }
     }
 
     /// Joint motion in real time: programme time runs at the rate.
     fn in_time(&self, jet: &JointJet<N>) -> JointCommand<N> {
-        let (r, c) = (self.program.rate().value(), self.program.rate().slope());
+        let (r, c) = self.program.time_rate();
         let mut command = JointCommand::at_rest(jet.position);
         for axis in 0..N {
             command.velocity[axis] = jet.velocity[axis] * r;
@@ -306,22 +437,29 @@ where
         self.mode = Mode::Fault;
         if category != StopCategory::Category2 {
             self.on_path = false;
+            self.program.stand_still();
+            self.rate = 0.0;
         }
-        if category == StopCategory::Category1 && self.halt.is_none() {
-            self.halt = Some(Halt::new(&self.command, &self.config.limits));
+        let stopping = self.off_path.is_some_and(|way| !way.returns());
+        let leaves = category == StopCategory::Category1 || self.off_path.is_some();
+        if category == StopCategory::Category0 {
+            // The drives are gone: nothing is left to carry out.
+            self.off_path = None;
+        } else if leaves && !stopping && self.stop != Some(StopCategory::Category0) {
+            self.off_path = Some(OffPath::stop(&self.command, &self.config.limits));
         }
     }
 
-    fn is_at_rest(&self) -> bool {
-        match &self.halt {
-            Some(halt) => halt.is_done(),
+    pub(super) fn is_at_rest(&self) -> bool {
+        match &self.off_path {
+            Some(way) => way.is_done(),
             None => !self.on_path || self.program.is_at_rest() && self.prefilter.is_drained(),
         }
     }
 
     fn output(&self, refused: Option<Event>, stage_ns: [u32; 4]) -> CycleOutput<N> {
-        let Mark { line, segment, marker, arc } = self.mark;
-        let moving = self.mode == Mode::Running;
+        let Mark { line, segment, marker, setting, .. } = self.mark;
+        let welds = matches!(self.mode, Mode::Running | Mode::Resuming) && !self.config.arc.dry;
         let cut = match self.stop {
             Some(StopCategory::Category0) => true,
             Some(StopCategory::Category1) => self.is_at_rest(),
@@ -344,7 +482,8 @@ where
             overruns: self.overruns,
             stage_ns,
         };
+        let arc = ArcCommand { on: welds && self.arc.has_current(), setting };
         let power = self.mode != Mode::Disabled && !cut;
-        CycleOutput { command: self.command, power, arc: arc && moving, status }
+        CycleOutput { command: self.command, power, arc, status }
     }
 }

@@ -36,6 +36,17 @@ impl AlongPath {
 impl<const N: usize> JointMotion<N> {
     pub(super) const REST: Self =
         Self { velocity: [0.0; N], acceleration: [0.0; N], jerk: [0.0; N], path: AlongPath::NONE };
+
+    /// The same motion as time runs backward.
+    pub(super) fn reversed(self) -> Self {
+        let AlongPath { velocity, jerk, .. } = self.path;
+        Self {
+            velocity: self.velocity.map(|v| -v),
+            jerk: self.jerk.map(|j| -j),
+            path: AlongPath { velocity: -velocity, jerk: -jerk, ..self.path },
+            ..self
+        }
+    }
 }
 
 /// A ring of samples at whole multiples of a spacing in programme time, from just before now to the horizon.

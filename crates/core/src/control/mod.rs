@@ -12,18 +12,23 @@
 //! | | [prefilters](JointPrefilter), where the cell has them: the joint commands that do not make the arm ring | |
 //! | 4 safety | judges the command by its differences; stops the arm instead where it would leave the envelope | limits |
 
+mod arc;
 mod block;
 mod cycle;
 mod feedback;
-mod halt;
+mod history;
 mod lookahead;
 mod mode;
+mod off_path;
 mod prefilter;
 mod program;
 mod rate;
+mod resume;
+mod retreat;
 mod telemetry;
 mod trail;
 
+pub use arc::ArcRules;
 pub use block::{BLOCK_PIECES, Block, Command, Motion, PathMotion};
 pub use cycle::{Cycle, CycleConfig, CycleInput};
 pub use feedback::ServoModel;

@@ -11,6 +11,10 @@ pub enum Mode {
     Running,
     /// Paused, or on the way to the pause along the path; the job can go on.
     Holding,
+    /// On the way from the pause to the motion of the job: to the path, back along the bead, and the arc is lit again.
+    Resuming,
+    /// Going back along the path, with the arc out.
+    Backing,
     /// On the way to a stop that ends the job.
     Stopping,
     /// A fault is latched; the arm stops or has stopped. Only a reset leads out.
@@ -30,6 +34,8 @@ pub enum Event {
     Hold,
     /// Operator: go on after a pause.
     Resume,
+    /// Operator: go back along the path until told to hold.
+    BackUp,
     /// Operator: stop on the path and end the job.
     Stop,
     /// Operator: acknowledge the latched fault.
@@ -38,14 +44,24 @@ pub enum Event {
     Fault,
     /// Cycle: the arm has come to rest.
     AtRest,
+    /// Cycle: the arm is where the job goes on, and the arc burns where it shall.
+    Ready,
     /// Cycle: the job has no more commands.
     JobDone,
 }
 
 impl Mode {
     /// All modes, for tables.
-    pub const ALL: [Self; 6] =
-        [Self::Disabled, Self::Standstill, Self::Running, Self::Holding, Self::Stopping, Self::Fault];
+    pub const ALL: [Self; 8] = [
+        Self::Disabled,
+        Self::Standstill,
+        Self::Running,
+        Self::Holding,
+        Self::Resuming,
+        Self::Backing,
+        Self::Stopping,
+        Self::Fault,
+    ];
 
     /// The word for it in recordings.
     #[must_use]
@@ -55,6 +71,8 @@ impl Mode {
             Self::Standstill => "standstill",
             Self::Running => "running",
             Self::Holding => "holding",
+            Self::Resuming => "resuming",
+            Self::Backing => "backing",
             Self::Stopping => "stopping",
             Self::Fault => "fault",
         }
@@ -68,8 +86,8 @@ impl Mode {
 
     /// The mode after an event, or `None` where the event means nothing in this mode and is refused.
     ///
-    /// `resumable` tells whether a job stands where it was stopped, on its path: then a reset leads to
-    /// [`Mode::Holding`], from where it can go on; otherwise to [`Mode::Standstill`].
+    /// `resumable` tells whether there is a job that can go on: then a reset leads to [`Mode::Holding`]; otherwise to
+    /// [`Mode::Standstill`].
     #[must_use]
     pub fn after(self, event: Event, resumable: bool) -> Option<Self> {
         use Event as E;
@@ -77,9 +95,13 @@ impl Mode {
             (_, E::Fault) => Some(Self::Fault),
             (Self::Disabled, E::Enable) => Some(Self::Standstill),
             (Self::Standstill | Self::Holding, E::Disable) => Some(Self::Disabled),
-            (Self::Standstill, E::Start) | (Self::Holding, E::Resume) => Some(Self::Running),
-            (Self::Running, E::Hold) => Some(Self::Holding),
-            (Self::Running | Self::Holding, E::Stop) => Some(Self::Stopping),
+            (Self::Standstill, E::Start) | (Self::Resuming, E::Ready) => Some(Self::Running),
+            (Self::Holding, E::Resume) => Some(Self::Resuming),
+            (Self::Holding, E::BackUp) => Some(Self::Backing),
+            (Self::Running | Self::Resuming | Self::Backing, E::Hold) | (Self::Backing, E::AtRest) => {
+                Some(Self::Holding)
+            }
+            (Self::Running | Self::Holding | Self::Resuming | Self::Backing, E::Stop) => Some(Self::Stopping),
             (Self::Running, E::JobDone) | (Self::Stopping, E::AtRest) => Some(Self::Standstill),
             (Self::Fault, E::Reset) => Some(if resumable { Self::Holding } else { Self::Standstill }),
             _ => None,
@@ -89,16 +111,18 @@ impl Mode {
 
 impl Event {
     /// All events, for tables.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Enable,
         Self::Disable,
         Self::Start,
         Self::Hold,
         Self::Resume,
+        Self::BackUp,
         Self::Stop,
         Self::Reset,
         Self::Fault,
         Self::AtRest,
+        Self::Ready,
         Self::JobDone,
     ];
 }
@@ -134,9 +158,18 @@ Running Stop -> Stopping
 Running Fault -> Fault
 Running JobDone -> Standstill
 Holding Disable -> Disabled
-Holding Resume -> Running
+Holding Resume -> Resuming
+Holding BackUp -> Backing
 Holding Stop -> Stopping
 Holding Fault -> Fault
+Resuming Hold -> Holding
+Resuming Stop -> Stopping
+Resuming Fault -> Fault
+Resuming Ready -> Running
+Backing Hold -> Holding
+Backing Stop -> Stopping
+Backing Fault -> Fault
+Backing AtRest -> Holding
 Stopping Fault -> Fault
 Stopping AtRest -> Standstill
 Fault Reset -> Standstill

@@ -18,22 +18,31 @@ pub struct JointSignal<const N: usize> {
     position: [f64; N],
     velocity: [f64; N],
     acceleration: [f64; N],
-    /// Path that the program has covered since its start.
-    way: f64,
+    /// Path that runs on with real time.
+    course: f64,
+    /// Way of the tool along its paths since the program's start.
+    tool_way: f64,
     /// Rate of programme time.
     rate: f64,
 }
 
 impl<const N: usize> Signal for JointSignal<N> {
-    const ZERO: Self =
-        Self { position: [0.0; N], velocity: [0.0; N], acceleration: [0.0; N], way: 0.0, rate: 0.0 };
+    const ZERO: Self = Self {
+        position: [0.0; N],
+        velocity: [0.0; N],
+        acceleration: [0.0; N],
+        course: 0.0,
+        tool_way: 0.0,
+        rate: 0.0,
+    };
 
     #[inline]
     fn add(&mut self, share: f64, other: &Self) {
         self.position.add(share, &other.position);
         self.velocity.add(share, &other.velocity);
         self.acceleration.add(share, &other.acceleration);
-        self.way += share * other.way;
+        self.course += share * other.course;
+        self.tool_way += share * other.tool_way;
         self.rate += share * other.rate;
     }
 }
@@ -58,18 +67,20 @@ pub struct JointPrefilter<const N: usize, M> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shaped<const N: usize> {
     pub(super) command: JointCommand<N>,
-    /// The place of the program that the arm has come to, and the rate at which it goes on.
+    /// The place of the program that the arm has come to, the way of the tool up to there, and the rate at which it goes on.
     pub(super) mark: Mark,
+    pub(super) tool_way: f64,
     pub(super) rate: f64,
 }
 
 /// Where the program is in a cycle.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Progress {
     pub(super) mark: Mark,
-    /// Way at which the mark was set, and now.
+    /// Course at which the mark was set, and now.
     pub(super) since: f64,
-    pub(super) way: f64,
+    pub(super) course: f64,
+    pub(super) tool_way: f64,
     pub(super) rate: f64,
 }
 
@@ -105,26 +116,27 @@ impl<const N: usize, M: AsRef<[PrefilterEntry<N>]> + AsMut<[PrefilterEntry<N>]>>
         self.stages.iter().flatten().all(PrefilterStage::is_drained)
     }
 
-    /// At rest at a position, with a program that has not begun.
-    pub(super) fn reset(&mut self, position: [f64; N], mark: Mark) {
-        let signal = JointSignal { position, ..JointSignal::ZERO };
+    /// At rest at a position, where the program is.
+    pub(super) fn reset(&mut self, position: [f64; N], progress: &Progress) {
+        let Progress { mark, course, tool_way, rate, .. } = *progress;
+        let signal = JointSignal { position, course, tool_way, rate, ..JointSignal::ZERO };
         self.stages.iter_mut().flatten().for_each(|stage| stage.reset(&signal));
         self.trail.reset(mark);
     }
 
     /// One cycle.
     pub(super) fn update(&mut self, command: &JointCommand<N>, progress: &Progress) -> Shaped<N> {
-        let Progress { mark, since, way, rate } = *progress;
+        let Progress { mark, since, course, tool_way, rate } = *progress;
         if self.is_none() {
-            return Shaped { command: *command, mark, rate };
+            return Shaped { command: *command, mark, tool_way, rate };
         }
         let JointCommand { position, velocity, acceleration } = *command;
-        let mut signal = JointSignal { position, velocity, acceleration, way, rate };
+        let mut signal = JointSignal { position, velocity, acceleration, course, tool_way, rate };
         for stage in self.stages.iter_mut().flatten() {
             signal = stage.update(&signal);
         }
-        let JointSignal { position, velocity, acceleration, way, rate } = signal;
+        let JointSignal { position, velocity, acceleration, course, tool_way, rate } = signal;
         let command = JointCommand { position, velocity, acceleration };
-        Shaped { command, mark: self.trail.pass(mark, since, way), rate }
+        Shaped { command, mark: self.trail.pass(mark, since, course), tool_way, rate }
     }
 }

@@ -1,12 +1,13 @@
 //! Tier 2: where the program stands, and how far programme time goes on in this cycle.
 
 use super::block::{Block, Command, Motion};
+use super::history::{Done, History};
 use super::lookahead::{AlongPath, JointMotion, Lookahead};
 use super::rate::{Rate, RateLimits};
-use super::trail::Mark;
+use super::trail::{Mark, Way};
 use crate::geometry::Pose;
 use crate::kinematics::{JointJet, Kinematics};
-use crate::path::PathState;
+use crate::path::{Measure, PathState};
 use crate::safety::Fault;
 
 /// Commands held between the queue and the motion.
@@ -26,20 +27,25 @@ pub(super) struct Program<const N: usize> {
     pending: [Command<N>; PENDING],
     first: usize,
     count: usize,
-    /// Programme time now, and when the first pending move begins.
-    now: f64,
-    move_start: f64,
+    /// Programme time now, and when the first pending move begins. The motion is in the moves done while it is before that.
+    pub(super) now: f64,
+    pub(super) move_start: f64,
     /// Path covered before the first pending move.
-    way_before: f64,
-    /// A move has ended at rest, and the arm has yet to come to where it ended.
-    arriving: bool,
+    way_before: Way,
+    /// A move has come to its end at rest, and the arm has yet to come to it.
+    pub(super) arriving: bool,
+    pub(super) done: History<N>,
+    /// Programme time runs backward; the look-ahead then counts from the time given down.
+    pub(super) backward: Option<f64>,
+    /// Way of the tool at which the arc was last lit.
+    arc_way: f64,
     /// What is left of a dwell that has begun.
     dwell_left: Option<f64>,
-    rate: Rate,
-    ahead: Lookahead<N>,
+    pub(super) rate: Rate,
+    pub(super) ahead: Lookahead<N>,
     /// Joint positions at the look-ahead's end, and now: the seeds of the inverse kinematics.
-    ahead_position: [f64; N],
-    position: [f64; N],
+    pub(super) ahead_position: [f64; N],
+    pub(super) position: [f64; N],
     place: Place,
 }
 
@@ -51,9 +57,16 @@ pub(super) struct Place {
     pub(super) ended: bool,
 }
 
+/// What the program needs to know of the arm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Arm {
+    pub(super) motion: Follows,
+    pub(super) arc_burns: bool,
+}
+
 /// How the arm follows the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Arm {
+pub(super) enum Follows {
     /// It is where the program is.
     AtOnce,
     /// Part of the motion so far is still in the prefilter.
@@ -72,8 +85,11 @@ impl<const N: usize> Program<N> {
             count: 0,
             now: 0.0,
             move_start: 0.0,
-            way_before: 0.0,
+            way_before: Way::default(),
             arriving: false,
+            done: History::new(),
+            backward: None,
+            arc_way: 0.0,
             dwell_left: None,
             rate: Rate::constant(0.0),
             ahead: Lookahead::new(sample_spacing),
@@ -97,16 +113,14 @@ impl<const N: usize> Program<N> {
         &self.rate
     }
 
-    /// Path covered since the start, and by the moves that are done: where what the place says began. Its unit is that of each path, and
-    /// seconds for a move of the joints.
-    pub(super) fn way(&self) -> (f64, f64) {
-        let here = self.head_move().map_or(0.0, |block| way_on(block, self.now - self.move_start));
-        (self.way_before + here, self.way_before)
-    }
-
     /// Nothing moves: time stands still, or there is nothing to move along.
     pub(super) fn is_at_rest(&self) -> bool {
-        self.rate.is_stopped() || self.head_move().is_none()
+        self.arriving || self.rate.is_stopped() || self.under_way(self.now).is_none()
+    }
+
+    /// Time stands still from now on: the arm has left the path.
+    pub(super) fn stand_still(&mut self) {
+        self.rate = Rate::constant(0.0);
     }
 
     /// One cycle on towards the rate `goal`. What follows a move that ends at rest waits until the arm stands there.
@@ -124,12 +138,24 @@ impl<const N: usize> Program<N> {
     ) -> Result<(), Fault> {
         self.refill(source, goal);
         self.look_ahead(kinematics)?;
-        if self.arriving && arm != Arm::Behind {
+        if self.arriving {
+            if arm.motion == Follows::Behind {
+                return Ok(());
+            }
             self.arriving = false;
-            self.enter_head(goal);
+            self.go_on(goal);
         }
-        if self.head_move().is_some() {
+        let before = self.now;
+        if self.under_way(before).is_some() {
             self.now += self.rate.advance(goal, self.now, &self.ahead, limits, period);
+        }
+        self.stop_among_done(before, arm);
+        if self.now < self.move_start {
+            self.find_place();
+            return Ok(());
+        }
+        if self.head_move().is_none() {
+            self.now = self.move_start;
         }
         // Each turn removes a command, or is the last.
         for _ in 0..PENDING {
@@ -148,7 +174,8 @@ impl<const N: usize> Program<N> {
         period: f64,
         arm: Arm,
     ) -> Result<bool, Fault> {
-        match self.head() {
+        let head = (self.count > 0).then(|| &self.pending[self.first]);
+        match head {
             None => return Ok(false),
             Some(Command::Move(block)) => {
                 let end = self.move_start + block.duration();
@@ -157,10 +184,11 @@ impl<const N: usize> Program<N> {
                 }
                 let (rests, way) = (block.ends_at_rest, way_on(block, block.duration()));
                 // Exactly where the move ends, however the cycles fell.
-                self.position = joints_on(block, block.duration(), &self.position, kinematics)?.position;
-                self.move_start = end;
-                self.way_before += way;
-                self.arriving = rests && arm != Arm::AtOnce;
+                let position = joints_on(block, block.duration(), &self.position, kinematics)?.position;
+                self.done.push(Done { start: self.move_start, way: self.way_before, block: *block });
+                (self.position, self.move_start) = (position, end);
+                self.way_before = self.way_before.plus(way);
+                self.arriving = rests && arm.motion != Follows::AtOnce;
                 self.pop(goal);
                 if self.arriving || !self.moves_on() {
                     // Nothing to spend the rest of the period on.
@@ -173,7 +201,7 @@ impl<const N: usize> Program<N> {
             }
             Some(Command::Dwell { line, segment, duration }) => {
                 let (line, segment, duration) = (*line, *segment, *duration);
-                (self.place.mark.line, self.place.mark.segment) = (line, segment);
+                self.set_place(line, segment, self.place.flange_from_tcp);
                 // It counts from the cycle after the one in which the arm has come to rest.
                 let elapsed = if goal > 0.0 { period } else { 0.0 };
                 let left = self.dwell_left.map_or(duration, |left| left - elapsed);
@@ -184,7 +212,15 @@ impl<const N: usize> Program<N> {
                 }
                 self.dwell_left = None;
             }
-            Some(Command::Arc { on }) => self.place.mark.arc = *on,
+            Some(Command::Arc { on, setting }) => {
+                let on = *on;
+                (self.place.mark.arc, self.place.mark.setting) = (on, *setting);
+                if on && !arm.arc_burns {
+                    self.arc_way = self.way().tool;
+                    return Ok(false);
+                }
+            }
+            Some(Command::ArcSetting(setting)) => self.place.mark.setting = *setting,
             Some(Command::Marker(number)) => self.place.mark.marker = *number,
             Some(Command::End) => {
                 self.place.ended = true;
@@ -200,20 +236,93 @@ impl<const N: usize> Program<N> {
     /// # Errors
     /// [`Fault::NoInverse`] where the path has no joint solution.
     pub(super) fn joints<K: Kinematics<N>>(&mut self, kinematics: &K) -> Result<JointJet<N>, Fault> {
-        let jet = match self.head_move() {
-            Some(block) => joints_on(block, self.now - self.move_start, &self.position, kinematics)?,
+        let jet = match self.under_way(self.now) {
+            Some((start, block)) => joints_on(block, self.now - start, &self.position, kinematics)?,
             None => JointJet::at_rest(self.position),
         };
         self.position = jet.position;
         Ok(jet)
     }
 
+    /// The move under way at a programme time up to the first pending one, and when it begins.
+    pub(super) fn under_way(&self, time: f64) -> Option<(f64, &Block<N>)> {
+        if time < self.move_start {
+            return self.done.at(time).map(|done| (done.start, &done.block));
+        }
+        self.head_move().map(|block| (self.move_start, block))
+    }
+
+    /// Path covered up to now.
+    pub(super) fn way(&self) -> Way {
+        let (before, _) = self.way_under_way();
+        self.under_way(self.now).map_or(before, |(start, block)| before.plus(way_on(block, self.now - start)))
+    }
+
+    /// Path that runs on with real time, whichever way programme time runs, and where what the place says began on it.
+    pub(super) fn course(&self) -> (f64, f64) {
+        let (way, (before, after)) = (self.way().path, self.way_under_way());
+        if self.backward.is_some() { (-way, -after.path) } else { (way, before.path) }
+    }
+
+    /// Path covered up to the start of the move under way, and up to its end.
+    fn way_under_way(&self) -> (Way, Way) {
+        let before = match self.done.at(self.now) {
+            Some(done) if self.now < self.move_start => done.way,
+            _ => self.way_before,
+        };
+        let move_way = self.under_way(self.now).map(|(_, block)| way_on(block, block.duration()));
+        (before, before.plus(move_way.unwrap_or_default()))
+    }
+
+    /// Way of the tool since the arc was last lit, in metres.
+    pub(super) fn bead(&self) -> f64 {
+        self.way().tool - self.arc_way
+    }
+
+    /// Says where the program is, among the moves done.
+    pub(super) fn find_place(&mut self) {
+        if let Some((_, block)) = self.under_way(self.now) {
+            let (line, segment, tool) = (block.line, block.segment, block.flange_from_tcp);
+            self.set_place(line, segment, tool);
+        }
+    }
+
+    fn set_place(&mut self, line: u32, segment: u32, tool: Pose) {
+        (self.place.mark.line, self.place.mark.segment, self.place.flange_from_tcp) = (line, segment, tool);
+    }
+
+    /// The arm has come to where it had to be at rest.
+    fn go_on(&mut self, goal: f64) {
+        if self.now < self.move_start {
+            self.rate = Rate::constant(goal);
+        } else {
+            self.enter_head(goal);
+        }
+    }
+
+    /// Where a move among those done ends at rest, the arm comes to that place before it goes on.
+    fn stop_among_done(&mut self, before: f64, arm: Arm) {
+        if before >= self.move_start || arm.motion == Follows::AtOnce {
+            return;
+        }
+        let Some((start, block)) = self.under_way(before) else { return };
+        let end = start + block.duration();
+        if block.ends_at_rest && self.now >= end {
+            (self.now, self.arriving) = (end, true);
+        }
+    }
+
+    /// The look-ahead's time of a programme time: it always runs on.
+    pub(super) fn ahead_time(&self, time: f64) -> f64 {
+        self.backward.map_or(time, |from| from - time)
+    }
+
     fn head(&self) -> Option<&Command<N>> {
         (self.count > 0).then(|| &self.pending[self.first])
     }
 
-    /// The move under way.
-    fn head_move(&self) -> Option<&Block<N>> {
+    /// The move at the head of the pending commands, unless the arm has yet to come to the end of the one before.
+    pub(super) fn head_move(&self) -> Option<&Block<N>> {
         match self.head() {
             Some(Command::Move(block)) if !self.arriving => Some(block),
             _ => None,
@@ -222,7 +331,9 @@ impl<const N: usize> Program<N> {
 
     /// The next command that takes time is a move.
     fn moves_on(&self) -> bool {
-        let at_once = |command: &&Command<N>| matches!(command, Command::Marker(_) | Command::Arc { .. });
+        let at_once = |command: &&Command<N>| {
+            matches!(command, Command::Marker(_) | Command::Arc { on: false, .. } | Command::ArcSetting(_))
+        };
         let next = (0..self.count).map(|k| self.nth(k)).find(|command| !at_once(command));
         matches!(next, Some(Command::Move(_)))
     }
@@ -242,9 +353,8 @@ impl<const N: usize> Program<N> {
         if let Some(block) = self.head_move() {
             let (line, segment, tool, from_rest) =
                 (block.line, block.segment, block.flange_from_tcp, block.starts_at_rest);
-            (self.place.mark.line, self.place.mark.segment, self.place.flange_from_tcp) =
-                (line, segment, tool);
-            if from_rest {
+            self.set_place(line, segment, tool);
+            if from_rest && self.now >= self.move_start {
                 self.rate = Rate::constant(goal);
             }
         }
@@ -273,11 +383,15 @@ impl<const N: usize> Program<N> {
         })
     }
 
-    fn look_ahead<K: Kinematics<N>>(&mut self, kinematics: &K) -> Result<(), Fault> {
-        self.ahead.forget_before(self.now);
+    pub(super) fn look_ahead<K: Kinematics<N>>(&mut self, kinematics: &K) -> Result<(), Fault> {
+        self.ahead.forget_before(self.ahead_time(self.now));
         for _ in 0..SAMPLES_PER_CYCLE {
             let Some(time) = self.ahead.wanted() else { break };
-            let Some(motion) = self.sample(time, kinematics)? else { break };
+            let motion = match self.backward {
+                Some(from) => self.sample_back(from - time, kinematics)?,
+                None => self.sample(time, kinematics)?,
+            };
+            let Some(motion) = motion else { break };
             self.ahead.push(motion);
         }
         Ok(())
@@ -289,6 +403,13 @@ impl<const N: usize> Program<N> {
         time: f64,
         kinematics: &K,
     ) -> Result<Option<JointMotion<N>>, Fault> {
+        if time < self.move_start
+            && let Some((start, block)) = self.under_way(time)
+        {
+            let (motion, position) = joint_motion(block, time - start, &self.ahead_position, kinematics)?;
+            self.ahead_position = position;
+            return Ok(Some(motion));
+        }
         let mut start = self.move_start;
         let mut rests = true;
         for k in 0..self.count {
@@ -296,11 +417,9 @@ impl<const N: usize> Program<N> {
             let end = start + block.duration();
             if time < end {
                 let since = (time - start).max(0.0);
-                let jet = joints_on(block, since, &self.ahead_position, kinematics)?;
-                let JointJet { position, velocity, acceleration, jerk } = jet;
-                let path = along_path(block, since);
+                let (motion, position) = joint_motion(block, since, &self.ahead_position, kinematics)?;
                 self.ahead_position = position;
-                return Ok(Some(JointMotion { velocity, acceleration, jerk, path }));
+                return Ok(Some(motion));
             }
             (start, rests) = (end, block.ends_at_rest);
         }
@@ -308,16 +427,32 @@ impl<const N: usize> Program<N> {
     }
 }
 
+/// The joints' motion and position at a time since a block's start.
+pub(super) fn joint_motion<const N: usize, K: Kinematics<N>>(
+    block: &Block<N>,
+    since: f64,
+    seed: &[f64; N],
+    kinematics: &K,
+) -> Result<(JointMotion<N>, [f64; N]), Fault> {
+    let JointJet { position, velocity, acceleration, jerk } = joints_on(block, since, seed, kinematics)?;
+    let path = along_path(block, since);
+    Ok((JointMotion { velocity, acceleration, jerk, path }, position))
+}
+
 /// The path covered at a time since a block's start.
-fn way_on<const N: usize>(block: &Block<N>, time: f64) -> f64 {
+fn way_on<const N: usize>(block: &Block<N>, time: f64) -> Way {
     match &block.motion {
-        Motion::Joint(_) => time,
-        Motion::Path(motion) => motion.state(time).position - motion.state(0.0).position,
+        Motion::Joint(_) => Way { path: time, tool: 0.0 },
+        Motion::Path(motion) => {
+            let path = motion.state(time).position - motion.state(0.0).position;
+            let tool = if motion.path.measure() == Measure::Length { path } else { 0.0 };
+            Way { path, tool }
+        }
     }
 }
 
 /// The tool's motion along its path at a time since a block's start.
-fn along_path<const N: usize>(block: &Block<N>, time: f64) -> AlongPath {
+pub(super) fn along_path<const N: usize>(block: &Block<N>, time: f64) -> AlongPath {
     match &block.motion {
         Motion::Joint(_) => AlongPath::NONE,
         Motion::Path(motion) => {

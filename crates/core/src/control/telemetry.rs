@@ -1,6 +1,7 @@
 //! What the cycle says about itself.
 
 use super::mode::{Event, Mode};
+use crate::arc::ArcCommand;
 use crate::drive::JointCommand;
 use crate::geometry::Pose;
 use crate::safety::Fault;
@@ -31,8 +32,8 @@ pub struct CycleOutput<const N: usize> {
     pub command: JointCommand<N>,
     /// The drives may be powered. False when disabled and after a stop of category 0 or 1.
     pub power: bool,
-    /// The arc shall burn.
-    pub arc: bool,
+    /// For the power source.
+    pub arc: ArcCommand,
     /// Where the controller is.
     pub status: Status<N>,
 }

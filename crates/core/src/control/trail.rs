@@ -1,17 +1,36 @@
 //! Where the program is, as far as the arm has come.
 
+use crate::arc::ArcSetting;
+
 /// Changes that may be under way.
 const CHANGES: usize = 256;
 /// Rounding of a way that went through a prefilter, in metres.
 const ROUNDING: f64 = 1e-9;
 
 /// A place of the program.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Mark {
     pub(super) line: u32,
     pub(super) segment: u32,
     pub(super) marker: u32,
     pub(super) arc: bool,
+    pub(super) setting: ArcSetting,
+}
+
+/// Path covered by the program since its start.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Way {
+    /// In the unit of each path, and in seconds for a move of the joints.
+    pub(super) path: f64,
+    /// By the tool along its paths, in metres.
+    pub(super) tool: f64,
+}
+
+impl Way {
+    /// This way and another one after it.
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self { path: self.path + other.path, tool: self.tool + other.tool }
+    }
 }
 
 /// Marks that lie on the way between the program and the arm.

@@ -77,6 +77,16 @@ pub enum Fault {
     },
     /// The operator pressed the emergency stop.
     EmergencyStop,
+    /// The arc did not light.
+    ArcNotLit {
+        /// Strikes in a row.
+        tries: u32,
+    },
+    /// The arc went out.
+    ArcLost {
+        /// Seconds without arc.
+        seconds: f64,
+    },
 }
 
 /// How the arm is brought to rest, in the words of IEC 60204-1; from the mildest to the severest.
@@ -96,9 +106,11 @@ impl Fault {
     pub fn category(&self) -> StopCategory {
         match self {
             Self::Drive(_) => StopCategory::Category0,
-            Self::FollowingError { .. } | Self::Overrun { .. } | Self::EmergencyStop => {
-                StopCategory::Category2
-            }
+            Self::FollowingError { .. }
+            | Self::Overrun { .. }
+            | Self::EmergencyStop
+            | Self::ArcNotLit { .. }
+            | Self::ArcLost { .. } => StopCategory::Category2,
             Self::PositionLimit { .. }
             | Self::VelocityLimit { .. }
             | Self::AccelerationLimit { .. }

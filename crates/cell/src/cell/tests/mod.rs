@@ -2,6 +2,8 @@
 
 use seamline::geometry::Vector3;
 
+use seamline::arc::ArcVoltage;
+
 use super::*;
 
 mod mistakes;
@@ -97,7 +99,7 @@ fn every_key_of_the_default_has_an_effect() {
         assert!(effective, "{header}{line}: no other value changes the cell");
         tried += 1;
     }
-    assert_eq!(tried, 158);
+    assert_eq!(tried, 167);
 }
 
 /// Values of the same type to put in place of one in the default file.
@@ -157,8 +159,8 @@ fn new_numbers_are_added_in_order() {
 #[test]
 fn one_of_two_alternatives_replaces_the_other() {
     let cell = parse("[[arc_start]]\nnumber = 1\nvoltage_v = 24.5\n[[weave]]\nnumber = 2\nwavelength_mm = 5");
-    assert_eq!(cell.arc_start(1).map(|condition| condition.voltage), Some(Voltage::Volts(24.5)));
-    assert_eq!(cell.arc_start(2).map(|condition| condition.voltage), Some(Voltage::Synergic(1.0)));
+    assert_eq!(cell.arc_start(1).map(|condition| condition.voltage), Some(ArcVoltage::Volts(24.5)));
+    assert_eq!(cell.arc_start(2).map(|condition| condition.voltage), Some(ArcVoltage::Synergic(1.0)));
     assert_eq!(cell.weave(2).map(|weave| weave.rate), Some(WeaveRate::Wavelength(0.005)));
     assert_eq!(cell.weave(1).map(|weave| weave.rate), Some(WeaveRate::Frequency(3.0)));
 }
