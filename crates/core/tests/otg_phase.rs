@@ -110,6 +110,19 @@ fn lines_stay_straight_when_planned_anew_on_every_cycle() {
     }
 }
 
+/// Where there is nothing to do, nothing is done, whatever the limits are.
+#[test]
+fn a_line_without_length_takes_no_time() {
+    for jerk in [100.0, f64::INFINITY] {
+        let here = State::at_rest([0.3, -1.2, 0.0]);
+        let mut input = Input::new(here, here, Limits::symmetric([1.0; 3], [10.0; 3], [jerk; 3]));
+        phase(&mut input);
+        let trajectory = calculate(&input).unwrap();
+        assert_eq!(trajectory.duration(), 0.0);
+        assert_eq!(trajectory.at_time(0.1).position, here.position);
+    }
+}
+
 /// A problem that is not collinear: time synchronization, which the output says, or an error if the line was demanded.
 #[test]
 fn what_is_no_line_is_said_to_be_none() {

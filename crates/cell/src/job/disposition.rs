@@ -2,8 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::expression::{Expression, Node};
-use super::instruction::{Data, Instruction, Interpolation, Io, MoveInstruction, Weld};
+use super::instruction::{Data, Instruction, Io, MoveInstruction, Weld};
 use super::names::nearest;
 use super::parser::INSTRUCTIONS;
 use super::walk;
@@ -151,15 +150,9 @@ fn of_move(step: &MoveInstruction) -> Disposition {
         refused("a tag of this move would change the motion and is not built")
     } else if step.no_wait {
         Accepted("the next instruction waits for the end of the move")
-    } else if step.interpolation == Interpolation::Joint && !is_zero(step.position_level.as_ref()) {
-        Accepted("a joint move stops exactly on its point")
     } else {
         Executed
     }
-}
-
-fn is_zero(level: Option<&Expression>) -> bool {
-    level.is_some_and(|e| matches!(e.node, Node::Number { value: 0.0, .. }))
 }
 
 fn of_data(data: &Data) -> Disposition {

@@ -22,6 +22,8 @@ pub(super) const SHARE: f64 = 0.45;
 /// corners next to it too.
 pub(super) const BLEND_SHARES: [f64; 3] = [0.25, 0.375, 0.5];
 
+pub(super) const NOTHING_PERMITTED: &str = "the cell permits no corner error here";
+
 /// How a move passes into the next, at most `error` metres from the point between: nothing where they may run on as they are, otherwise
 /// a blend. `paths` are what is left of the two moves, `lengths` those of the whole moves, `speed` the faster one's.
 ///
@@ -44,7 +46,7 @@ pub(super) fn passing(
             MustStop::Apart => "the next move begins elsewhere",
             MustStop::OnTheSpot => "the next move turns on the spot",
             MustStop::Reversal => "the path turns back",
-            MustStop::NothingPermitted => "the cell permits no corner error here",
+            MustStop::NothingPermitted => NOTHING_PERMITTED,
         })),
     }
 }

@@ -36,13 +36,16 @@ struct Part<'a, const N: usize> {
 }
 
 impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
-    /// Hands out the whole run; `stop` says why it ends where the job does not ask for it.
+    /// Hands out all that is held back; `stop` says why it ends where the job does not ask for it.
     pub(super) fn end_run(
         &mut self,
         stop: Option<Stops>,
         out: &mut Vec<Planned<N>>,
     ) -> Result<(), PlanError> {
-        let passed = self.run.last().filter(|link| link.pass.is_some()).map(|link| link.step.clone());
+        let of_run = self.run.last().map(|link| (&link.step, link.pass));
+        let last = self.held.as_ref().map(|held| (&held.step, held.pass)).or(of_run);
+        let passed = last.filter(|(_, pass)| pass.is_some()).map(|(step, _)| step.clone());
+        self.end_joint_move(out);
         self.advance(true, out)?;
         if let (Some(Stops(why)), Some(Step { at, action: Action::Move(r#move), .. })) = (stop, passed) {
             let text = format!("the robot stops exactly on this point ({}): {why}", r#move.zone);

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Step ─▶ Planner ─▶ goal (resolve) ─▶ Path ─▶ PathJoints (one branch) ─▶ timing ─▶ Block, Block, …
-//!                              └─▶ otg (MOVJ) ───────────────────────────────────▶ Block
+//!                              └─▶ otg (MOVJ, and the corner into the next MOVJ) ──────▶ Block, Block, …
 //! ```
 
 mod arm;
@@ -10,6 +10,8 @@ mod corner;
 mod cut;
 mod error;
 mod hand_out;
+mod joint_corner;
+mod joint_move;
 mod joint_path;
 mod planner;
 mod reach;

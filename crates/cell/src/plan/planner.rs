@@ -3,12 +3,12 @@
 use std::collections::VecDeque;
 
 use seamline::arc::{ArcSetting, ArcVoltage};
-use seamline::control::{Block, Command, Motion};
+use seamline::control::Command;
 use seamline::geometry::Pose;
-use seamline::otg::{Input, Limits, State, Synchronization, calculate};
 
 use super::arm::{Arm, PlanningArm};
 use super::error::{PlanError, Problem};
+use super::joint_move::JointMove;
 use super::resolve::{self, Goal, ToolPose, goal};
 use super::run::{Link, Run, Stops};
 use super::smear::Smear;
@@ -16,7 +16,7 @@ use super::speed;
 use super::tool_path;
 use super::workspace;
 use crate::cell::Cell;
-use crate::job::{Action, ArcCondition, ArcPart, Frame, Location, Move, MovePath, Speed, Step, Zone};
+use crate::job::{Action, ArcCondition, ArcPart, Frame, Location, Move, MovePath, Step};
 use crate::record::{SegmentInfo, SegmentKind};
 
 /// What a step, or a part of it, becomes. A step without motion has one of these; a move has several where it is handed over in
@@ -60,8 +60,7 @@ impl<const N: usize> Planned<N> {
 
 /// The planner's place in a job: what the next step starts from.
 ///
-/// Moves of the tool centre point that may run on into the next are held back until enough of the way is known: [`Planner::take`]
-/// hands out what is settled, [`Planner::finish`] the rest, which then ends at rest.
+/// Moves that may run on into the next are held back until enough of the way is known: [`Planner::take`] hands out what is settled, [`Planner::finish`] the rest, which then ends at rest.
 #[derive(Debug, Clone)]
 pub struct Planner<'a, const N: usize, K> {
     pub(super) arm: &'a Arm<N, K>,
@@ -72,8 +71,10 @@ pub struct Planner<'a, const N: usize, K> {
     pub(super) arc: bool,
     segment: u32,
     pub(super) run: Run<N>,
+    /// A joint move that waits for the step after it; the run is empty then.
+    pub(super) held: Option<JointMove<N>>,
     /// Steps taken and not yet looked at.
-    waiting: VecDeque<Step>,
+    pub(super) waiting: VecDeque<Step>,
 }
 
 impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
@@ -83,7 +84,17 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
     /// [`Problem::UnknownTool`] where the cell has no tool 0.
     pub fn new(arm: &'a Arm<N, K>, cell: &'a Cell, joints: [f64; N]) -> Result<Self, Problem> {
         let (tool, run) = (ToolPose::of(cell, 0)?, Run::new(Smear::of(&cell.vibration)));
-        Ok(Self { arm, cell, joints, tool, arc: false, segment: 0, run, waiting: VecDeque::new() })
+        Ok(Self {
+            arm,
+            cell,
+            joints,
+            tool,
+            arc: false,
+            segment: 0,
+            run,
+            held: None,
+            waiting: VecDeque::new(),
+        })
     }
 
     /// The joints when all that was handed out is done.
@@ -150,17 +161,17 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
     /// Takes the first waiting step. It stays waiting where a move before it is at fault.
     fn take_first(&mut self, step: &Step, out: &mut Vec<Planned<N>>) -> Result<(), PlanError> {
         match &step.action {
-            Action::Move(r#move) if r#move.path != MovePath::Joint => self.take_path_move(step, r#move, out),
+            Action::Move(r#move) if r#move.path == MovePath::Joint => self.take_joint_move(step, r#move, out),
+            Action::Move(r#move) => self.take_path_move(step, r#move, out),
             Action::Output(_) | Action::Message { .. } | Action::Accepted { .. } | Action::ArcSet(_)
-                if !self.run.is_empty() =>
+                if self.is_under_way() =>
             {
                 self.waiting.pop_front();
-                self.run.add_aside(step.clone());
+                self.add_aside(step);
                 Ok(())
             }
-            action => {
-                let stop = matches!(action, Action::Move(_)).then_some(Stops(BEFORE_JOINT_MOVE));
-                self.end_run(stop, out)?;
+            _ => {
+                self.end_run(None, out)?;
                 self.waiting.pop_front();
                 let planned = self.plan_alone(step).map_err(|problem| self.leave_out(step, problem))?;
                 out.push(planned);
@@ -169,8 +180,21 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         }
     }
 
+    /// A move is held back.
+    fn is_under_way(&self) -> bool {
+        self.held.is_some() || !self.run.is_empty()
+    }
+
+    /// A step that takes no time, when the move that is held back is done.
+    fn add_aside(&mut self, step: &Step) {
+        match &mut self.held {
+            Some(held) => held.after.push(step.clone()),
+            None => self.run.add_aside(step.clone()),
+        }
+    }
+
     /// The state that the next step finds after one that has no plan.
-    fn leave_out(&mut self, step: &Step, problem: Problem) -> PlanError {
+    pub(super) fn leave_out(&mut self, step: &Step, problem: Problem) -> PlanError {
         self.skip(step);
         PlanError { at: step.at.clone(), problem }
     }
@@ -202,7 +226,6 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
     fn plan_alone(&mut self, step: &Step) -> Result<Planned<N>, Problem> {
         let mut planned = self.aside(step);
         match &step.action {
-            Action::Move(r#move) => self.joint_move(r#move, &mut planned)?,
             Action::ArcOn(condition) => self.arc_on(condition, &mut planned)?,
             Action::ArcOff(condition) => self.arc_off(condition, &mut planned)?,
             Action::Dwell { seconds } => self.dwell(*seconds, &mut planned),
@@ -230,7 +253,7 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         planned
     }
 
-    fn next_segment(&mut self) -> u32 {
+    pub(super) fn next_segment(&mut self) -> u32 {
         self.segment += 1;
         self.segment
     }
@@ -290,6 +313,9 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         r#move: &Move,
         out: &mut Vec<Planned<N>>,
     ) -> Result<(), PlanError> {
+        if self.held.is_some() {
+            self.end_run(Some(Stops("a move of the tool follows")), out)?;
+        }
         if !self.run.is_empty() && self.tool_of(r#move).is_some_and(|tool| tool != self.tool) {
             self.end_run(Some(Stops("the next move has another tool")), out)?;
         }
@@ -395,72 +421,6 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         let at_rest = || self.arm.kinematics.forward(&self.joints) * self.tool.flange_from_tcp;
         self.run.end().unwrap_or_else(at_rest)
     }
-
-    /// All joints together, each within its own limits.
-    fn joint_move(&mut self, r#move: &Move, planned: &mut Planned<N>) -> Result<(), Problem> {
-        let goal = goal(&r#move.target, self.cell, self.arm, &self.joints)?;
-        if r#move.zone != Zone::Exact {
-            planned.notices.push(format!("the robot stops exactly on this point ({})", r#move.zone));
-        }
-        let name = || r#move.target.name.to_string();
-        let target = goal
-            .joints
-            .map_err(|error| Problem::Unreachable { name: name(), reason: self.arm.in_words(&error) })?;
-        let Speed::JointPercent(percent) = r#move.speed else {
-            return Err(Problem::Speed { found: speed::tag(&r#move.speed), expected: "VJ=" });
-        };
-        let input = joint_input(&self.arm.limits, &self.joints, &target, percent / 100.0, r#move);
-        let trajectory = calculate(&input)
-            .map_err(|error| Problem::Generator { name: name(), reason: error.to_string() })?;
-        let tool = &goal.tool.flange_from_tcp;
-        workspace::check_joint_move(&trajectory, &self.arm.kinematics, tool, &self.cell.safety)?;
-        let (segment, line) = (self.next_segment(), planned.at.line);
-        planned.commands.push(Command::Move(Block {
-            line,
-            segment,
-            flange_from_tcp: goal.tool.flange_from_tcp,
-            starts_at_rest: true,
-            ends_at_rest: true,
-            motion: Motion::Joint(trajectory),
-        }));
-        planned.segment = Some(SegmentInfo {
-            segment,
-            line,
-            kind: SegmentKind::Joint,
-            speed: None,
-            arc: self.arc,
-            constant_part: None,
-            rounded: [0.0; 2],
-        });
-        planned.duration = trajectory.duration() + self.run_out();
-        (self.joints, self.tool) = (target, goal.tool);
-        Ok(())
-    }
-}
-
-/// Why the robot stops before a joint move.
-const BEFORE_JOINT_MOVE: &str = "a joint move follows";
-
-/// Rest to rest at a share of the joints' speeds. ACC and DEC are shares too; which side of the acceleration limits
-/// they mean depends on the joint's direction.
-fn joint_input<const N: usize>(
-    limits: &seamline::safety::MotionLimits<N>,
-    start: &[f64; N],
-    target: &[f64; N],
-    share: f64,
-    r#move: &Move,
-) -> Input<N> {
-    let mut motion = Limits::symmetric(limits.velocity.map(|v| v * share), limits.acceleration, limits.jerk);
-    for joint in 0..N {
-        let limit = limits.acceleration[joint];
-        let (speeding, slowing) = (limit * r#move.acceleration, limit * r#move.deceleration);
-        let forward = target[joint] >= start[joint];
-        motion.acceleration_max[joint] = if forward { speeding } else { slowing };
-        motion.acceleration_min[joint] = -if forward { slowing } else { speeding };
-    }
-    let mut input = Input::new(State::at_rest(*start), State::at_rest(*target), motion);
-    input.synchronization = [Synchronization::Time; N];
-    input
 }
 
 /// What the power source is set to: what the line says, otherwise the cell's condition.

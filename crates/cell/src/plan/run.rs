@@ -356,7 +356,7 @@ impl<const N: usize> Piece<N> {
         let link = Arc::clone(&self.link);
         let length = link.path.length();
         let kind = SegmentKind::Corner {
-            path: *blend,
+            path: Some(*blend),
             corner: link.path.pose(length).translation.vector,
             permitted: link.pass.unwrap_or(0.0),
         };

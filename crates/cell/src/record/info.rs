@@ -76,8 +76,8 @@ pub enum SegmentKind {
     Path(Path),
     /// From one move into the next, past the point that both are taught to meet in.
     Corner {
-        /// The way round.
-        path: Path,
+        /// The way round, where it is a path of the tool centre point: between joint moves it is none.
+        path: Option<Path>,
         /// The point, in the robot frame.
         corner: Vector3,
         /// Permitted distance from it, in metres.
@@ -107,7 +107,8 @@ impl SegmentKind {
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
         match self {
-            Self::Path(path) | Self::Corner { path, .. } => Some(path),
+            Self::Path(path) => Some(path),
+            Self::Corner { path, .. } => path.as_ref(),
             Self::Joint | Self::Dwell => None,
         }
     }

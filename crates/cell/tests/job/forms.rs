@@ -37,7 +37,7 @@ fn fate(instruction: &Instruction) -> char {
 const FORMS: &[(&str, &str, char)] = &[
     // Moves.
     ("MOVJ C00000 VJ=50.00 PL=0", "MOVJ", 'e'),
-    ("MOVJ C00000 VJ=0.01", "MOVJ", 'a'),
+    ("MOVJ C00000 VJ=0.01", "MOVJ", 'e'),
     ("MOVJ C0 VJ=50.00 PL=0", "MOVJ", 'e'),
     ("MOVL C00001 V=211.7 PL=0", "MOVL", 'e'),
     ("MOVL C00001 V=211.7", "MOVL", 'e'),

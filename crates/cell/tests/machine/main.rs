@@ -12,6 +12,7 @@ mod bench;
 mod chain;
 mod cycle;
 mod faults;
+mod joint_chain;
 mod no_alloc;
 mod pause;
 mod prefilter;

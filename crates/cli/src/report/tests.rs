@@ -84,7 +84,7 @@ struct Move {
 impl Move {
     fn pose(&self, time: f64) -> Pose {
         match &self.info.kind {
-            SegmentKind::Path(path) | SegmentKind::Corner { path, .. } => {
+            SegmentKind::Path(path) | SegmentKind::Corner { path: Some(path), .. } => {
                 path.pose(travelled(time, path.length(), self.speed))
             }
             SegmentKind::Joint => {
@@ -92,7 +92,7 @@ impl Move {
                 let share = travelled(time, 1.0, self.speed);
                 pose_of(&std::array::from_fn(|joint| from[joint] + share * (to[joint] - from[joint])))
             }
-            SegmentKind::Dwell => self.to,
+            SegmentKind::Corner { path: None, .. } | SegmentKind::Dwell => self.to,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::arc::ArcSetting;
 use crate::geometry::{Pose, PoseJet};
-use crate::otg::Trajectory;
+use crate::otg::{Sample, Trajectory};
 use crate::path::{Path, PathState, TimingPiece};
 
 /// Most pieces of timing in one block; a longer motion is several blocks.
@@ -67,9 +67,51 @@ pub struct Block<const N: usize> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Motion<const N: usize> {
     /// Each joint on its own trajectory.
-    Joint(Trajectory<N>),
+    Joint(TrajectoryMotion<N>),
     /// The tool centre point along a path.
     Path(PathMotion),
+}
+
+/// A trajectory of the joints, or what is run of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrajectoryMotion<const N: usize> {
+    trajectory: Trajectory<N>,
+    /// From when to when, in the trajectory's time.
+    from: f64,
+    to: f64,
+}
+
+impl<const N: usize> TrajectoryMotion<N> {
+    /// The whole of a trajectory.
+    #[must_use]
+    pub fn whole(trajectory: Trajectory<N>) -> Self {
+        Self { trajectory, from: 0.0, to: trajectory.duration() }
+    }
+
+    /// What lies between two times of this one, 0 ≤ `from` ≤ `to` ≤ duration, in seconds.
+    #[must_use]
+    pub fn part(&self, from: f64, to: f64) -> Self {
+        let end = if to < self.duration() { self.from + to } else { self.to };
+        Self { trajectory: self.trajectory, from: self.from + from, to: end }
+    }
+
+    /// The trajectory that it is of.
+    #[must_use]
+    pub fn trajectory(&self) -> &Trajectory<N> {
+        &self.trajectory
+    }
+
+    /// Duration in seconds of programme time.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.to - self.from
+    }
+
+    /// The joints at a time since the block's start; from its end on exactly those of the end.
+    #[must_use]
+    pub fn at_time(&self, time: f64) -> Sample<N> {
+        self.trajectory.at_time(if time < self.duration() { self.from + time } else { self.to })
+    }
 }
 
 /// A path, and the motion along it.
@@ -150,7 +192,7 @@ impl<const N: usize> Block<N> {
     #[must_use]
     pub fn duration(&self) -> f64 {
         match &self.motion {
-            Motion::Joint(trajectory) => trajectory.duration(),
+            Motion::Joint(motion) => motion.duration(),
             Motion::Path(motion) => motion.duration(),
         }
     }

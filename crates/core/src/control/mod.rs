@@ -29,7 +29,7 @@ mod telemetry;
 mod trail;
 
 pub use arc::ArcRules;
-pub use block::{BLOCK_PIECES, Block, Command, Motion, PathMotion};
+pub use block::{BLOCK_PIECES, Block, Command, Motion, PathMotion, TrajectoryMotion};
 pub use cycle::{Cycle, CycleConfig, CycleInput};
 pub use feedback::ServoModel;
 pub use mode::{Event, Mode};

@@ -471,8 +471,8 @@ fn joints_on<const N: usize, K: Kinematics<N>>(
     kinematics: &K,
 ) -> Result<JointJet<N>, Fault> {
     match &block.motion {
-        Motion::Joint(trajectory) => {
-            let state = trajectory.at_time(time);
+        Motion::Joint(motion) => {
+            let state = motion.at_time(time);
             let (position, velocity) = (state.position, state.velocity);
             Ok(JointJet { position, velocity, acceleration: state.acceleration, jerk: state.jerk })
         }

@@ -45,9 +45,11 @@ impl<const N: usize> Line<N> {
         let vectors = parallels(&axes, control);
         let (chosen, reference) = guide(&vectors, members, first);
         let along = vectors[chosen].value[reference];
-        let direction: [f64; N] = core::array::from_fn(|axis| {
+        let mut direction: [f64; N] = core::array::from_fn(|axis| {
             if members[axis] && along != 0.0 { vectors[chosen].value[axis] / along } else { 0.0 }
         });
+        // Where there is nothing to do the line is that axis' own.
+        direction[reference] = 1.0;
         for vector in &vectors {
             for axis in (0..N).filter(member) {
                 let off = vector.value[axis] - direction[axis] * vector.value[reference];
