@@ -1,5 +1,5 @@
 //! Times random tool paths of the default arm and prints, for each, how long the planning took against the
-//! motion.
+//! motion. Planned is as in jobs, with room for override and pause.
 //!
 //! `path_timing [COUNT [FOLDER]]`: with a folder, each move is also written there for
 //! `tests/path_timing_reference.py`.
@@ -55,12 +55,12 @@ fn main() -> std::io::Result<()> {
 
 /// The timing, and the least time in which it was found.
 fn planned(job: &mut Move) -> (Option<Timing>, f64) {
-    let joints = joint_limits();
+    let (joints, limits) = (joint_limits().with_room(), job.limits.with_room());
     let mut least = f64::INFINITY;
     let mut found = None;
     for _ in 0..REPEATS {
         let begun = Instant::now();
-        match time_alone(&mut job.path, &joints, &job.limits) {
+        match time_alone(&mut job.path, &joints, &limits) {
             Ok(timing) => found = Some(timing),
             Err(error) => println!("{error:?}"),
         }

@@ -115,8 +115,9 @@ fn assert_whole(timing: &Timing, length: f64, limits: &PathLimits, what: &str) {
 
 /// 250 random moves, 50 of them beside the wrist's and 50 beside the shoulder's singularity (1 µrad and 1 µm
 /// to 20 mrad and 10 mm), 5 to 1000 mm/s: each gets an optimized or plain timing, and every joint keeps its
-/// limits by exact derivatives and by differences of positions 1 ms apart. Against TOPP-RA, which needs no
-/// time to build up acceleration where we need 20 ms, the motions take 1.02 times as long (median), 1.06 (95
+/// limits by exact derivatives and by differences of positions 1 ms apart, here those that leave room, as jobs are
+/// planned. Against TOPP-RA at the full limits, which needs no time to build up acceleration where we need 20 ms, the
+/// motions take 1.02 times as long (median), 1.06 (95
 /// %), 1.15 (greatest) or less.
 #[test]
 fn random_moves_keep_every_limit_and_lose_little_time() {
@@ -131,6 +132,7 @@ fn random_moves_keep_every_limit_and_lose_little_time() {
     for index in 0..250 {
         let Move { kind, mut path, limits } = random_move(&mut random, Kind::of(index));
         let what = format!("move {index}, {kind:?}");
+        let (joints, limits) = (joints.with_room(), limits.with_room());
         let timing = time_alone(&mut path, &joints, &limits).unwrap();
         assert_ne!(timing.kind(), TimingKind::Stretched, "{what}");
         assert_whole(&timing, path.length(), &limits, &what);

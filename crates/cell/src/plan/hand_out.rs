@@ -74,7 +74,8 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             Err((s, error)) => return Err(self.fault(&ahead, s, &self.follow_reason(&error))),
         };
         let caps = self.caps(&ahead, &mut joints, sight.to);
-        let stretches = smear::slowed(&stretches, &caps, self.run.speed);
+        let mut stretches = smear::slowed(&stretches, &caps, self.run.speed);
+        stretches.iter_mut().for_each(|stretch| stretch.limits = stretch.limits.with_room());
         let mut joints = joints.over(route.clone());
         let course = Course { stretches: &stretches, start: self.run.speed, open: sight.open };
         let timing = match time_path(&mut joints, &self.timing_limits(), &course) {
@@ -159,7 +160,8 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
 
     fn timing_limits(&self) -> TimingLimits<N> {
         let limits = &self.arm.limits;
-        TimingLimits { velocity: limits.velocity, acceleration: limits.acceleration, jerk: limits.jerk }
+        let (velocity, acceleration, jerk) = (limits.velocity, limits.acceleration, limits.jerk);
+        TimingLimits { velocity, acceleration, jerk }.with_room()
     }
 
     fn blocks(

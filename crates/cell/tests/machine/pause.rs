@@ -243,14 +243,15 @@ impl Figures {
     }
 }
 
-/// Median at most 20 ms and the rest at most 60 ms beyond the second-order least time, but for one in a hundred: a
-/// plan that uses two joints' jerks fully, in opposite senses, leaves the rate no choice until one of them lets go, which
-/// the second order does not know of.
+/// Median at most 20 ms and the rest at most 60 ms beyond the second-order least time, but for one override in a
+/// thousand: a line that speeds up fully and is then planned to brake fully needs up to 65 ms for it by offline
+/// optimization too, since its planned jerk leaves the rate no choice, which the second order does not know of.
 fn judge(figures: &Figures) {
     figures.print();
     for (kind, asked) in ASKED.iter().enumerate() {
         assert!(figures.at(kind, 0.5) <= 0.020, "{asked}: median");
-        assert!(figures.at(kind, 0.99) <= 0.060, "{asked}: 99 %");
+        let rest = if asked.starts_with("override") { 0.999 } else { 1.0 };
+        assert!(figures.at(kind, rest) <= 0.060, "{asked}: greatest");
     }
 }
 
