@@ -222,6 +222,37 @@ fn the_scara_experiment_keeps_its_figures() {
     assert_eq!(refused("experiment scara --plant-drift-pct -100").0, Some(2));
 }
 
+/// Within FIR-ZVD's vibration in 0.92 of its time; what auto is asked for is checked.
+#[test]
+fn the_motion_of_least_time_beside_fir_zvd() {
+    let page = file("auto.html");
+    let found = answer(&format!(
+        "experiment scara --prefilter auto --error-um 500 --safe-drift-pct 0 --json --plot {}",
+        page.display()
+    ));
+    let runs = found["runs"].as_array().expect("runs");
+    let names: Vec<_> = runs.iter().map(|run| run["prefilter"].as_str().expect("a name")).collect();
+    assert_eq!(names, ["none", "FIR-ZVD", "auto"]);
+    let against = &found["against_fir_zvd"][0];
+    assert!(number(&against["path_time"]) <= 0.92, "{found}");
+    assert!(number(&against["max"]) <= 1.0 && number(&against["residual"]) <= 1.0, "{found}");
+    is_page(&page, &["least time", "one curve a corner error", "auto, 1000 µm", "FIR-ZVD, 500 µm"]);
+    let asked = answer("experiment scara --prefilter auto --error-um 250 --max-g 0.2 --json");
+    let auto = &asked["runs"][2];
+    assert!(number(&auto["max_g"]) <= 0.2004 && number(&auto["path_time_s"]) < 4.1, "{auto}");
+    let wrong = [
+        ("experiment scara --prefilter zv", 2, "expected auto"),
+        ("experiment scara --max-g 0.2", 2, "--prefilter"),
+        ("experiment scara --prefilter auto --max-g 0", 2, "above 0"),
+        ("experiment scara --prefilter auto --max-g 1e-9", 1, "no motion keeps"),
+        ("check missing.JBI --prefilter auto", 2, "experiment scara"),
+    ];
+    for (arguments, status, expected) in wrong {
+        let (found, message) = refused(arguments);
+        assert!(found == Some(status) && message.contains(expected), "{arguments}: {found:?} {message}");
+    }
+}
+
 #[test]
 fn help_has_an_example() {
     for command in ["shaper", "identify", "corner", "experiment", "experiment scara"] {

@@ -43,18 +43,27 @@ impl Segment<'_> {
         self.start + self.path.length() / self.feedrate
     }
 
-    /// From the segment's start to where the tool is on it.
-    fn way(&self, time: f64) -> Vector3<f64> {
+    /// How far the tool is on it.
+    fn way(&self, time: f64) -> f64 {
         let from_start = time - self.start;
         let from_deceleration = time - self.deceleration();
-        let s = if from_deceleration >= 0.0 {
+        if from_deceleration >= 0.0 {
             self.path.length() - self.feedrate * self.ramp.remaining(from_deceleration)
         } else {
             self.feedrate * self.ramp.integral(from_start)
-        };
-        let at = |s: f64| self.path.pose(s).translation.vector;
-        at(s.clamp(0.0, self.path.length())) - at(0.0)
+        }
     }
+}
+
+/// Where segments lead that each have gone some way: their ways add up.
+pub(super) fn superposed<'a>(segments: impl Iterator<Item = (&'a Path, f64)>) -> Vector3<f64> {
+    let mut sum: Option<Vector3<f64>> = None;
+    for (path, way) in segments {
+        let at = |s: f64| path.pose(s).translation.vector;
+        let start = at(0.0);
+        sum = Some(sum.unwrap_or(start) + at(way.clamp(0.0, path.length())) - start);
+    }
+    sum.unwrap_or_default()
 }
 
 impl<'a> Blend<'a> {
@@ -85,14 +94,9 @@ impl<'a> Blend<'a> {
     /// The commanded position at a time.
     #[must_use]
     pub fn position(&self, time: f64) -> Vector3<f64> {
-        let start = self
-            .segments
-            .first()
-            .map_or_else(Vector3::zeros, |first| first.path.pose(0.0).translation.vector);
-        self.segments
-            .iter()
-            .take_while(|segment| segment.start <= time)
-            .fold(start, |at, segment| at + segment.way(time))
+        let started =
+            self.segments.iter().take_while(|segment| segment.start <= time || segment.start <= 0.0);
+        superposed(started.map(|segment| (segment.path, segment.way(time))))
     }
 
     /// The corners, in the order of the path.
@@ -138,9 +142,9 @@ fn distance(first: &Segment<'_>, second: &Segment<'_>, overlap: &Overlap) -> f64
     let first = Segment { start: 0.0, ..*first };
     let begin = first.deceleration();
     let second = Segment { start: begin + overlap.delay, ..*second };
-    let whole =
-        first.path.pose(first.path.length()).translation.vector - first.path.pose(0.0).translation.vector;
-    let at = |time: f64| (first.way(time) + second.way(time) - whole).norm();
+    let corner = first.path.pose(first.path.length()).translation.vector;
+    let place = |time: f64| superposed([&first, &second].into_iter().map(|s| (s.path, s.way(time))));
+    let at = |time: f64| (place(time) - corner).norm();
     let (mut low, mut high) = (begin + overlap.delay, begin + overlap.deceleration);
     for _ in 0..THIRDS {
         let third = (high - low) / 3.0;

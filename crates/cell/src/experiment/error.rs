@@ -20,6 +20,12 @@ pub enum ExperimentError {
     /// The test path has no arc.
     #[error("the points of the test path's arc lie on no circle")]
     Path,
+    /// No motion keeps the vibration bound.
+    #[error("no motion keeps the tool's acceleration below {bound:.4} m/s² on this path")]
+    Bound {
+        /// In m/s².
+        bound: f64,
+    },
     /// The plant is no mode.
     #[error(transparent)]
     Mode(#[from] ModeError),

@@ -3,11 +3,13 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | `auto` | the motion of least time for a vibration bound and a corner error |
 //! | `blend` | segments that overlap in time: where the tool is commanded to be |
 //! | `error` | why there is no run |
 //! | `plant` | a flexible tool that follows the command |
 //! | `scara` | the experiment whole: identification, then a run for each prefilter and corner error |
 
+mod auto;
 mod blend;
 mod error;
 mod plant;
@@ -19,6 +21,7 @@ use seamline::kinematics::{Kinematics, models};
 use seamline::path::{ArcError, Path};
 use seamline::vibration::{Mode, Prefilter, Ramp};
 
+pub use auto::{AutoOptions, AutoOutcome, Compared, Quiet, QuietMotion, scara_auto, trade_off};
 pub use blend::{Blend, PlannedCorner};
 pub use error::ExperimentError;
 pub use plant::Plant;
@@ -107,20 +110,37 @@ pub fn run(
 ) -> Result<Run, ExperimentError> {
     let ramp = Ramp::from_kernel(&prefilter.kernel(modelled)?)?;
     let blend = Blend::plan(path, &ramp, setup.feedrate, permitted);
-    let trace = simulate(setup, &blend)?;
-    Ok(figures(&blend, trace))
+    follow(setup, blend.duration(), &|time| blend.position(time), blend.corners())
 }
 
-fn simulate(setup: &Setup, blend: &Blend<'_>) -> Result<Vec<Sample>, ExperimentError> {
-    let cycles = ((blend.duration() + setup.watched) / setup.period).ceil() as u64;
+/// Runs a commanded motion: its duration, where it is at a time, and its corners.
+///
+/// # Errors
+/// [`ExperimentError::Reach`].
+pub fn follow(
+    setup: &Setup,
+    duration: f64,
+    position: &dyn Fn(f64) -> Vector3<f64>,
+    corners: &[PlannedCorner],
+) -> Result<Run, ExperimentError> {
+    let trace = simulate(setup, duration, position)?;
+    Ok(figures(duration, corners, trace))
+}
+
+fn simulate(
+    setup: &Setup,
+    duration: f64,
+    position: &dyn Fn(f64) -> Vector3<f64>,
+) -> Result<Vec<Sample>, ExperimentError> {
+    let cycles = ((duration + setup.watched) / setup.period).ceil() as u64;
     let arm = models::scara600();
     let mut joints = [0.0; 4];
     let down = arm.forward(&joints).rotation;
-    let mut plant = Plant::at_rest(setup.plant, blend.position(0.0));
+    let mut plant = Plant::at_rest(setup.plant, position(0.0));
     let mut trace = Vec::with_capacity(cycles as usize);
     for cycle in 1..=cycles {
         let time = setup.period * cycle as f64;
-        let pose = Pose::from_parts(blend.position(time).into(), down);
+        let pose = Pose::from_parts(position(time).into(), down);
         joints =
             arm.inverse_nearest(&pose, &joints).map_err(|error| ExperimentError::Reach { time, error })?;
         let command = arm.forward(&joints).translation.vector;
@@ -130,8 +150,7 @@ fn simulate(setup: &Setup, blend: &Blend<'_>) -> Result<Vec<Sample>, ExperimentE
     Ok(trace)
 }
 
-fn figures(blend: &Blend<'_>, trace: Vec<Sample>) -> Run {
-    let path_time = blend.duration();
+fn figures(path_time: f64, corners: &[PlannedCorner], trace: Vec<Sample>) -> Run {
     let greatest = |samples: &[Sample]| samples.iter().map(|s| s.acceleration.norm()).fold(0.0, f64::max);
     let (moving, after) = trace.split_at(trace.partition_point(|sample| sample.time <= path_time));
     let squares: f64 = moving.iter().map(|s| s.acceleration.norm_squared()).sum();
@@ -140,7 +159,7 @@ fn figures(blend: &Blend<'_>, trace: Vec<Sample>) -> Run {
         acceleration_max: greatest(&trace),
         acceleration_rms: (squares / moving.len().max(1) as f64).sqrt(),
         residual_max: greatest(after),
-        corners: blend.corners().to_vec(),
+        corners: corners.to_vec(),
         trace,
     }
 }

@@ -6,7 +6,7 @@ use seamline::path::Path;
 use seamline::vibration::{Mode, Prefilter};
 
 use super::{ExperimentError, Run, Setup, run, test_path};
-use crate::identify::{IdentifiedMode, Signal, identify};
+use crate::identify::{IdentifiedMode, IdentifyError, Signal, identify};
 use crate::sim::random::Random;
 
 /// The document's prefilters, the bare command first.
@@ -19,7 +19,7 @@ pub const CORNER_ERRORS: [f64; 2] = [0.0, 500e-6];
 const NOISE: f64 = 0.05;
 const SEED: u64 = 900;
 /// 9600 mm/min.
-const FEEDRATE: f64 = 0.16;
+pub(super) const FEEDRATE: f64 = 0.16;
 
 /// What the experiment found.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,12 +61,7 @@ impl Outcome {
 /// [`ExperimentError::Mode`] where the drift leaves no frequency.
 pub fn scara(drift: f64) -> Result<Outcome, ExperimentError> {
     let path = test_path().map_err(|_| ExperimentError::Path)?;
-    let plant = |factor: f64| Mode::try_new(factor * TAU * 6.34, 0.022);
-    let setup = |plant: Mode| Setup { plant, feedrate: FEEDRATE, period: 1e-3, watched: 3.0 };
-    let measured = measure(&setup(plant(1.0)?), &path)?;
-    let identification = identify(&measured)?;
-    let identified = *identification.modes.first().ok_or(crate::identify::IdentifyError::NoVibration)?;
-    let modelled = Mode::try_new(TAU * identified.frequency_hz, identified.damping.max(0.0))?;
+    let Found { measured, identified, modelled } = find_mode(&path)?;
     let drifted = setup(plant(1.0 + drift)?);
     let mut runs = Vec::new();
     for permitted in CORNER_ERRORS {
@@ -76,6 +71,30 @@ pub fn scara(drift: f64) -> Result<Outcome, ExperimentError> {
         }
     }
     Ok(Outcome { identified, measured, runs })
+}
+
+/// The plant's mode as the experiment finds it.
+pub(super) struct Found {
+    pub(super) measured: Signal,
+    pub(super) identified: IdentifiedMode,
+    /// What prefilters are made for.
+    pub(super) modelled: Mode,
+}
+
+pub(super) fn find_mode(path: &[Path]) -> Result<Found, ExperimentError> {
+    let measured = measure(&setup(plant(1.0)?), path)?;
+    let identified = *identify(&measured)?.modes.first().ok_or(IdentifyError::NoVibration)?;
+    let modelled = Mode::try_new(TAU * identified.frequency_hz, identified.damping.max(0.0))?;
+    Ok(Found { measured, identified, modelled })
+}
+
+/// The document's mode at a factor of its frequency.
+pub(super) fn plant(factor: f64) -> Result<Mode, ExperimentError> {
+    Ok(Mode::try_new(factor * TAU * 6.34, 0.022)?)
+}
+
+pub(super) fn setup(plant: Mode) -> Setup {
+    Setup { plant, feedrate: FEEDRATE, period: 1e-3, watched: 3.0 }
 }
 
 /// What the accelerometer sees after a run without prefilter.

@@ -40,6 +40,9 @@ impl ModeArguments {
 /// A prefilter by its name.
 pub(super) fn prefilter(text: &str) -> Result<Prefilter, String> {
     Prefilter::from_name(text).ok_or_else(|| {
+        if text == "auto" {
+            return "auto plans a whole path at once, in `seamline experiment scara` alone; expected the name of a prefilter".to_owned();
+        }
         let names: Vec<_> = Prefilter::ALL.iter().map(|prefilter| prefilter.name().to_lowercase()).collect();
         format!("expected one of {}", names.join(", "))
     })

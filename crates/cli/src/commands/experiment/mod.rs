@@ -1,11 +1,12 @@
 //! `seamline experiment`: published experiments in simulation.
 
+mod auto;
 mod page;
 
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use seamline_cell::experiment::{Outcome, ScaraRun, scara};
+use seamline_cell::experiment::{Outcome, Run, ScaraRun, scara};
 use serde::Serialize;
 
 use super::modes::number;
@@ -31,7 +32,8 @@ what was identified, and each runs with corner errors of 0 and 500 um. Accelerat
 residual is what is left after the last command.
 
 Example:
-  seamline experiment scara --plant-drift-pct 15 --plot scara.html";
+  seamline experiment scara --plant-drift-pct 15 --plot scara.html
+  seamline experiment scara --prefilter auto --plot auto.html";
 
 /// Vibration and corner error of a SCARA for each prefilter (Yeh & You 2026, section 5).
 #[derive(Debug, clap::Args)]
@@ -46,6 +48,8 @@ struct ScaraArguments {
     /// Draw feedrates, corners, vibration and its spectrum on a page that opens offline.
     #[arg(long, value_name = "F.html")]
     plot: Option<PathBuf>,
+    #[command(flatten)]
+    auto: auto::AutoArguments,
 }
 
 fn drift(text: &str) -> Result<f64, String> {
@@ -54,6 +58,9 @@ fn drift(text: &str) -> Result<f64, String> {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let Experiment::Scara(arguments) = &arguments.experiment;
+    if arguments.auto.asked() {
+        return auto::run(arguments);
+    }
     let outcome = scara(0.01 * arguments.plant_drift_pct)?;
     let answer = Answer::of(&outcome);
     if let Some(path) = &arguments.plot {
@@ -100,9 +107,13 @@ impl Answer {
 
 impl Row {
     fn of(outcome: &Outcome, ScaraRun { prefilter, permitted, run }: &ScaraRun) -> Self {
-        let bare = outcome.bare(*permitted).unwrap_or(run);
+        Self::beside(outcome.bare(*permitted).unwrap_or(run), prefilter.name(), *permitted, run)
+    }
+
+    /// Reductions refer to the bare command's run.
+    fn beside(bare: &Run, prefilter: &'static str, permitted: f64, run: &Run) -> Self {
         Self {
-            prefilter: prefilter.name(),
+            prefilter,
             error_um: 1e6 * permitted,
             max_g: run.acceleration_max / G,
             rms_g: run.acceleration_rms / G,

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use seamline::vibration::{Mode, Ramp};
-use seamline_cell::experiment::{CORNER_ERRORS, Outcome, PREFILTERS, Sample, ScaraRun};
+use seamline_cell::experiment::{CORNER_ERRORS, Outcome, PREFILTERS, Run, Sample, ScaraRun};
 use seamline_cell::identify::amplitude_spectrum;
 
 use super::{Answer, G, Row};
@@ -11,9 +11,9 @@ use crate::plot::{Chart, Page, Series, Table, spaced};
 
 /// The corners of the test path, in mm.
 const CORNERS_MM: [[f64; 2]; 4] = [[140.0, 40.0], [275.0, 100.0], [410.0, 40.0], [360.0, 90.0]];
-/// What a chart leaves out, in mm/s and in g.
-const SPEED: f64 = 0.1;
-const ACCELERATION: f64 = 2e-4;
+/// Curves over time: title, unit, and what the chart may leave out.
+pub(super) const FEEDRATE: (&str, &str, f64) = ("Feedrate", "mm/s", 0.1);
+pub(super) const ACCELERATION: (&str, &str, f64) = ("Acceleration of the tool", "g", 2e-4);
 /// How long the vibration is shown after the last command, in seconds.
 const AFTER: f64 = 1.0;
 
@@ -28,12 +28,11 @@ pub(super) fn page(outcome: &Outcome, answer: &Answer, drift: f64) -> anyhow::Re
     let mut charts = vec![test_path(outcome), filtered(outcome)?];
     charts.extend(measured(outcome));
     for permitted in CORNER_ERRORS {
-        charts.push(over_time(outcome, permitted, ("Feedrate", "mm/s", SPEED), &speeds));
+        charts.push(over_time(named(outcome, permitted), permitted, FEEDRATE, &speeds));
     }
     charts.extend((0..CORNERS_MM.len()).map(|corner| close_up(outcome, corner)));
-    let acceleration = ("Acceleration of the tool", "g", ACCELERATION);
     for permitted in CORNER_ERRORS {
-        charts.push(over_time(outcome, permitted, acceleration, &accelerations));
+        charts.push(over_time(named(outcome, permitted), permitted, ACCELERATION, &accelerations));
     }
     charts.extend(CORNER_ERRORS.map(|permitted| residual_spectrum(outcome, permitted)));
     Ok(Page { title: "SCARA experiment".to_owned(), facts, tables, charts })
@@ -43,11 +42,15 @@ fn runs(outcome: &Outcome, permitted: f64) -> impl Iterator<Item = &ScaraRun> {
     outcome.runs.iter().filter(move |run| run.permitted == permitted)
 }
 
+fn named(outcome: &Outcome, permitted: f64) -> impl Iterator<Item = Line<'_>> {
+    runs(outcome, permitted).map(|run| (run.prefilter.name(), &run.run))
+}
+
 fn micrometres(permitted: f64) -> String {
     format!("corner error {:.0} µm", 1e6 * permitted)
 }
 
-fn results(answer: &Answer, permitted: f64) -> Table {
+pub(super) fn results(answer: &Answer, permitted: f64) -> Table {
     let row = |row: &Row| {
         vec![
             row.prefilter.to_owned(),
@@ -126,7 +129,7 @@ fn filtered(outcome: &Outcome) -> anyhow::Result<Chart> {
     for prefilter in PREFILTERS {
         let ramp = Ramp::from_kernel(&prefilter.kernel(&mode)?)?;
         let at = |t: f64| (t, FEEDRATE_MM_S * (ramp.value(t) - ramp.value(t - LENGTH)));
-        series.push(Series::thinned(prefilter.name(), spaced(-0.05, 0.95, 1000).map(at), SPEED));
+        series.push(Series::thinned(prefilter.name(), spaced(-0.05, 0.95, 1000).map(at), FEEDRATE.2));
     }
     Ok(Chart {
         title: "A feedrate of half a second through the prefilters".to_owned(),
@@ -165,31 +168,31 @@ fn mark(outcome: &Outcome) -> (f64, String) {
     (frequency, format!("{frequency:.3} Hz"))
 }
 
-fn speeds(run: &ScaraRun) -> Vec<(f64, f64)> {
-    let steps = run.run.trace.windows(2);
+pub(super) fn speeds(run: &Run) -> Vec<(f64, f64)> {
+    let steps = run.trace.windows(2);
     let speed = |pair: &[Sample]| {
         let (from, to) = (&pair[0], &pair[1]);
         (to.time, 1e3 * (to.command - from.command).norm() / (to.time - from.time))
     };
-    steps.map(speed).take_while(|(time, _)| *time <= run.run.path_time + 0.05).collect()
+    steps.map(speed).take_while(|(time, _)| *time <= run.path_time + 0.05).collect()
 }
 
-fn accelerations(run: &ScaraRun) -> Vec<(f64, f64)> {
-    let shown = run.run.trace.iter().take_while(|sample| sample.time <= run.run.path_time + AFTER);
+pub(super) fn accelerations(run: &Run) -> Vec<(f64, f64)> {
+    let shown = run.trace.iter().take_while(|sample| sample.time <= run.path_time + AFTER);
     shown.map(|sample| (sample.time, sample.acceleration.norm() / G)).collect()
 }
 
-type Curve<'a> = &'a dyn Fn(&ScaraRun) -> Vec<(f64, f64)>;
+pub(super) type Curve<'a> = &'a dyn Fn(&Run) -> Vec<(f64, f64)>;
+type Line<'a> = (&'static str, &'a Run);
 
-/// As the document's figures 14 and 16.
-fn over_time(
-    outcome: &Outcome,
+/// As the document's figures 14 and 16: runs by name.
+pub(super) fn over_time<'a>(
+    runs: impl IntoIterator<Item = Line<'a>>,
     permitted: f64,
     (title, unit, tolerance): (&str, &str, f64),
     curve: Curve<'_>,
 ) -> Chart {
-    let series =
-        runs(outcome, permitted).map(|run| Series::thinned(run.prefilter.name(), curve(run), tolerance));
+    let series = runs.into_iter().map(|(name, run)| Series::thinned(name, curve(run), tolerance));
     Chart {
         title: format!("{title}, {}", micrometres(permitted)),
         x: "time, s".to_owned(),
