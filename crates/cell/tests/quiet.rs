@@ -191,11 +191,12 @@ fn a_bound_of_the_root_mean_square_is_kept_and_costs_time() {
         corner_error: 500e-6,
         drift: 0.0,
     };
-    let bounded = Quiet { acceleration_rms: 0.55, ..open };
-    let [quick, calm] =
-        [open, bounded].map(|quiet| QuietMotion::plan(&path, &mode(6.34), FEEDRATE, &quiet).unwrap());
+    let [bounded, strictly] = [0.55, 0.25].map(|rms| Quiet { acceleration_rms: rms, ..open });
+    let [quick, calm, calmest] = [open, bounded, strictly]
+        .map(|quiet| QuietMotion::plan(&path, &mode(6.34), FEEDRATE, &quiet).unwrap());
     let rms = |motion: &QuietMotion<'_>| followed(motion, mode(6.34)).acceleration_rms;
     assert!(rms(&quick) > 0.6 && rms(&calm) <= 0.551, "{} {}", rms(&quick), rms(&calm));
+    assert!(rms(&calmest) <= 0.251 && calmest.duration() > calm.duration());
     assert!(calm.duration() > quick.duration());
 }
 
@@ -256,5 +257,5 @@ fn a_bound_below_all_motion_is_an_error() {
     let quiet =
         Quiet { acceleration: 1e-7, acceleration_rms: OPEN, command: COMMAND, corner_error: 0.0, drift: 0.0 };
     let found = QuietMotion::plan(&path, &mode(6.34), FEEDRATE, &quiet).err();
-    assert_eq!(found, Some(ExperimentError::Bound { bound: 1e-7 }));
+    assert_eq!(found, Some(ExperimentError::Bound { bound: 1e-7, rms: OPEN }));
 }

@@ -21,10 +21,14 @@ pub enum ExperimentError {
     #[error("the points of the test path's arc lie on no circle")]
     Path,
     /// No motion keeps the vibration bound.
-    #[error("no motion keeps the tool's acceleration below {bound:.4} m/s² on this path")]
+    #[error(
+        "no motion keeps the tool's acceleration within {bound} m/s² on this path, and its root mean square within {rms} m/s²"
+    )]
     Bound {
         /// In m/s².
         bound: f64,
+        /// Root mean square in m/s², infinite where it is open.
+        rms: f64,
     },
     /// The plant is no mode.
     #[error(transparent)]

@@ -8,7 +8,7 @@
 //! | `tool` | how the tool accelerates while the command's acceleration stays the same |
 //! | `window` | the motion through one corner, or at the path's ends: the convex program |
 //!
-//! The derivation is in `docs/vibration.md`, section 7.
+//! The derivation is in `docs/vibration.md`, section 6.
 
 mod compared;
 mod motion;
@@ -66,6 +66,9 @@ const CLOSE: f64 = 1e-3;
 /// What acceleration may cost where its root mean square is bounded, and the rounds, mostly halvings on a logarithmic scale, in which it is found.
 const CALM: [f64; 2] = [0.02, 50.0];
 const CALM_ROUNDS: usize = 12;
+/// Where that is not enough, the greatest acceleration is lowered to this share of it, time and again.
+const CALM_LOWER: f64 = 0.7;
+const CALM_LOWERED: usize = 15;
 /// The corner error is used to this fraction.
 const ERROR_USED: f64 = 0.999;
 
@@ -74,7 +77,7 @@ impl<'a> QuietMotion<'a> {
     /// the bound.
     ///
     /// One to four rounds; in each a convex program for each corner and both ends, or five for those with a curved segment, each of at most
-    /// 100 iterations. About 20 ms a program: 0.3 to 1.5 s for the test path. A bound of the root mean square takes up to twelve rounds more.
+    /// 100 iterations. About 20 ms a program: 0.3 to 1.5 s for the test path. A bound of the root mean square takes up to 27 rounds more, 13 as a rule.
     ///
     /// # Errors
     /// [`ExperimentError::Bound`] where no motion keeps the bound.
@@ -84,7 +87,7 @@ impl<'a> QuietMotion<'a> {
         feedrate: f64,
         quiet: &Quiet,
     ) -> Result<Self, ExperimentError> {
-        let bound = ExperimentError::Bound { bound: quiet.acceleration };
+        let bound = ExperimentError::Bound { bound: quiet.acceleration, rms: quiet.acceleration_rms };
         let (motion, asked) = quickest(path, mode, feedrate, quiet).ok_or(bound.clone())?;
         if motion.vibration(mode)[1] <= quiet.acceleration_rms {
             return Ok(motion);
@@ -141,6 +144,13 @@ fn calmer<'a>(
 ) -> Option<QuietMotion<'a>> {
     let mut asking = Quiet { acceleration: asked, ..*quiet };
     let [mut low, mut high] = CALM;
+    for _ in 0..CALM_LOWERED {
+        let calmest = fitting(path, mode, feedrate, &asking, high)?;
+        if calmest.vibration(mode)[1] <= quiet.acceleration_rms {
+            break;
+        }
+        asking.acceleration *= CALM_LOWER;
+    }
     let mut best = None;
     for _ in 0..CALM_ROUNDS {
         let middle = (low * high).sqrt();
