@@ -162,7 +162,7 @@ fn keeps_the_path(path: &[Path], motion: &QuietMotion<'_>, feedrate: f64, error:
         let (from, to) = (motion.position(time), motion.position(time + step));
         let speed = (to - from).norm() / step;
         assert!(speed <= feedrate * (1.0 + 1e-6), "{speed} at {time}");
-        if (time / step).round() as u32 % 20 == 0 {
+        if ((time / step).round() as u32).is_multiple_of(20) {
             let off = distance(path, &from);
             assert!(off <= error + 1e-6, "{off} off the path at {time}");
         }
