@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`cell`] | the cell file: robot, limits, tools, conditions, simulation |
 //! | [`experiment`] | the SCARA experiment: a flexible tool on a path with corners |
+//! | [`gcode`] | G-code programs: reader, interpreter, contours |
 //! | [`identify`] | flexible modes from a measured vibration |
 //! | [`job`] | INFORM job files: reader, checks, interpreter |
 //! | [`plan`] | from steps to blocks; the speed along a path that keeps every joint limit |
@@ -14,6 +15,7 @@
 
 pub mod cell;
 pub mod experiment;
+pub mod gcode;
 pub mod identify;
 pub mod job;
 pub mod plan;

@@ -290,4 +290,44 @@ pub enum Mistake {
         /// The data.
         what: String,
     },
+    /// A word of a G-code line that a run does not execute.
+    #[error("`{text}` is refused: {reason}")]
+    Refused {
+        /// As written.
+        text: String,
+        /// Why.
+        reason: &'static str,
+    },
+    /// A feed move before any F.
+    #[error("`{word}` has no feed, expected an F in this line or before it")]
+    NoFeed {
+        /// The move's code.
+        word: String,
+    },
+    /// An arc whose end is not as far from the centre as its start.
+    #[error(
+        "the arc starts {start_mm:.4} mm from its centre and ends {end_mm:.4} mm from it, expected the same to \
+         {tolerance_mm:.4} mm"
+    )]
+    ArcRadius {
+        /// Radius at the start.
+        start_mm: f64,
+        /// Radius at the end.
+        end_mm: f64,
+        /// How much they may differ.
+        tolerance_mm: f64,
+    },
+    /// An arc whose radius does not span its ends.
+    #[error(
+        "R is {radius_mm} mm, but start and end are {apart_mm:.4} mm apart, expected at least half of that"
+    )]
+    ArcTooSmall {
+        /// The radius.
+        radius_mm: f64,
+        /// Distance from start to end in the arc's plane.
+        apart_mm: f64,
+    },
+    /// A G-code file that does not say where it ends.
+    #[error("the file ends without M2, M30 or a closing %: it may have been cut off")]
+    MissingProgramEnd,
 }

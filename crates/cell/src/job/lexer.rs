@@ -9,10 +9,10 @@ use super::error::Mistake;
 
 /// A mistake in a line, before file and line number are known.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Fault {
+pub(crate) struct Fault {
     /// Column in bytes, from 1.
-    pub(super) column: u32,
-    pub(super) mistake: Mistake,
+    pub(crate) column: u32,
+    pub(crate) mistake: Mistake,
 }
 
 /// One token.
@@ -174,12 +174,12 @@ impl<'a> Lexer<'a> {
 }
 
 /// The column of an offset: from 1, and never beyond `u32`.
-pub(super) fn column(offset: usize) -> u32 {
+pub(crate) fn column(offset: usize) -> u32 {
     u32::try_from(offset).map_or(u32::MAX, |o| o.saturating_add(1))
 }
 
 /// Bytes as text: as they are where they are UTF-8, escaped otherwise.
-pub(super) fn printable(bytes: &[u8]) -> String {
+pub(crate) fn printable(bytes: &[u8]) -> String {
     std::str::from_utf8(bytes).map_or_else(|_| bytes.escape_ascii().to_string(), str::to_owned)
 }
 

@@ -45,6 +45,8 @@ pub use instruction::{
     JobReference, JumpTarget, MoveInstruction, OutputValue, PositionReference, SpeedKind, SpeedTag,
     WeaveTags, Weld,
 };
+pub(crate) use lexer::{Fault, column, printable};
+
 pub use interpreter::{Interpreter, MAX_CALLS, MAX_IDLE};
 pub use position::{
     Configuration, Coordinates, Frame, JobPosition, PositionKind, PositionName, Rectangular,
@@ -53,8 +55,8 @@ pub use position::{
 pub use program::{Header, Job, JobFile, Statement};
 pub use set::JobSet;
 pub use step::{
-    Action, ArcCondition, ArcPart, CircularArc, LinearSpeedUnit, Location, Move, MovePath, Note, Output,
-    Speed, SpeedOrigin, SplinePiece, Step, Target, Zone,
+    Action, ArcCondition, ArcPart, CircularArc, CurvePiece, LinearSpeedUnit, Location, Move, MovePath, Note,
+    Output, Passage, Speed, SpeedOrigin, SplinePiece, Step, Target, Zone,
 };
 pub use world::World;
 

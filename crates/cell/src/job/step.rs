@@ -3,6 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
+use seamline::geometry::Vector3;
+
 use super::condition::Condition;
 use super::expression::SignalKind;
 use super::instruction::SpeedKind;
@@ -127,6 +129,8 @@ pub enum MovePath {
     Circular(Box<CircularArc>),
     /// MOVS: a piece of the spline through the points of its run.
     Spline(SplinePiece),
+    /// A smooth curve from point to point, with the tool upright all along: part of a helix, or of a contour of G-code.
+    Curve(Box<CurvePiece>),
     /// IMOV: a line by an increment in a frame.
     Incremental {
         /// The increment's frame; `None` where the increment counts pulses, axis by axis.
@@ -163,13 +167,42 @@ pub struct SplinePiece {
     pub end: usize,
 }
 
+/// The polynomial of degree five that has the position, tangent and curvature of two passages. It starts where the move before ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurvePiece {
+    /// At its start.
+    pub start: Passage,
+    /// At its end.
+    pub end: Passage,
+}
+
+/// How a curve passes a point, by arc length; in the frame of the move's target.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Passage {
+    /// The point, in mm.
+    pub position_mm: Vector3,
+    /// Unit vector.
+    pub tangent: Vector3,
+    /// Towards the centre of curvature, in 1/mm.
+    pub curvature_per_mm: Vector3,
+}
+
 /// A point that a move goes to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Target {
-    /// Its name in the job.
-    pub name: PositionName,
+    /// Its name in the job; none where the line itself has the coordinates.
+    pub name: Option<PositionName>,
     /// Its coordinates.
     pub position: JobPosition,
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.name {
+            Some(name) => write!(f, "{name}"),
+            None => write!(f, "the target"),
+        }
+    }
 }
 
 /// The speed of a move.
@@ -234,6 +267,11 @@ pub enum Zone {
     },
     /// Nothing is written: the path runs on without a stop.
     Unspecified,
+    /// `G64 P`: how far from the programmed path the tool may be; with 0 it stops where the path bends.
+    Tolerance {
+        /// mm.
+        mm: f64,
+    },
 }
 
 /// An arc condition: from the cell, or written, with every value found.
@@ -307,6 +345,15 @@ pub enum Note {
     SplineTooShort,
     /// The two halves of an arc have different speeds; the whole arc takes the end point's.
     ArcSpeedsDiffer,
+    /// Rows of short lines of a G-code program that run as smooth curves.
+    Contours {
+        /// How many lines.
+        lines: u64,
+        /// How many curves.
+        curves: u64,
+        /// Greatest distance between them.
+        deviation_mm: f64,
+    },
 }
 
 impl fmt::Display for Note {
@@ -324,6 +371,12 @@ impl fmt::Display for Note {
                 write!(f, "fewer than three MOVS points in a row: the robot goes straight")
             }
             Self::ArcSpeedsDiffer => write!(f, "the arc runs at the speed of its end point"),
+            Self::Contours { lines, curves, deviation_mm } => {
+                write!(
+                    f,
+                    "{lines} lines run as {curves} smooth curves, at most {deviation_mm:.4} mm off them"
+                )
+            }
         }
     }
 }
@@ -347,6 +400,7 @@ impl fmt::Display for Zone {
             Self::Level(level) => write!(f, "PL={level}"),
             Self::CornerRadius { mm } => write!(f, "CR={mm}"),
             Self::Unspecified => write!(f, "no PL"),
+            Self::Tolerance { mm } => write!(f, "within {mm} mm"),
         }
     }
 }

@@ -8,8 +8,8 @@ use super::route::Route;
 use super::run::Stops;
 use super::smear::Smear;
 use super::smeared_corner::Passing;
-use super::speed::on_bends;
-use super::timing::PathLimits;
+use super::speed::{gentle, on_bends, shared};
+use super::timing::{PathLimits, least};
 
 /// A zone reaches from its point as far as the faster move goes in this time, in seconds, but within these multiples of the permitted
 /// error. So a slight bend between two long moves is rounded near the point only, and gently at speed.
@@ -65,12 +65,16 @@ pub(super) fn corner_speed(
     Passing { route: &route, blend: ends, corner, permitted }.speed(smear, fastest)
 }
 
-/// The gentler limits of both neighbours, and no more acceleration and jerk across the path than along it.
-pub(super) fn limits(blend: &Blend, before: &PathLimits, after: &PathLimits) -> PathLimits {
-    let acceleration = before.acceleration.min(after.acceleration);
-    let limits =
-        PathLimits { speed: before.speed.min(after.speed), acceleration, jerk: before.jerk.min(after.jerk) };
+/// The gentler limits of both neighbours, as slow as the corner asks for: `permitted` is what the cell permits to either.
+pub(super) fn limits(blend: &Blend, permitted: [&PathLimits; 2]) -> PathLimits {
+    let least = least(permitted[0], permitted[1]);
+    let shared = shared(&least);
     // Between two looks a sharp tip may bend more.
-    let across = (acceleration / blend.greatest_curvature).sqrt();
-    PathLimits { speed: limits.speed.min(across).min(on_bends(&blend.path, &limits)), ..limits }
+    let across = (shared.acceleration / blend.greatest_curvature).sqrt().min(on_bends(&blend.path, &shared));
+    let along = gentle(&least);
+    PathLimits {
+        speed: least.speed.min(across),
+        acceleration: along.acceleration.min(shared.acceleration),
+        jerk: along.jerk.min(shared.jerk),
+    }
 }

@@ -15,7 +15,7 @@ use super::run::{Link, Piece, Sight, Stops};
 use super::smear;
 use super::suggest::Trouble;
 use super::timing::{Course, JointPath as _, Timing, TimingError, TimingLimits, time_path};
-use crate::job::{Action, Step};
+use crate::job::{Action, Location, Step};
 use crate::record::SegmentKind;
 
 /// A look ahead that settles nothing is repeated with one this many times as far.
@@ -56,10 +56,9 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
 
     /// Hands out what is settled of the run: all of it where it is closed.
     pub(super) fn advance(&mut self, closed: bool, out: &mut Vec<Planned<N>>) -> Result<(), PlanError> {
-        let mut factor = 1.0;
-        while let Some(sight) = self.run.sight(closed, factor) {
+        while let Some(sight) = self.run.sight(closed) {
             let settled = self.hand_out(&sight, out)?;
-            factor = if settled { 1.0 } else { factor * WIDER };
+            self.run.farther = if settled { 1.0 } else { self.run.farther * WIDER };
         }
         Ok(())
     }
@@ -98,9 +97,13 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let end = if sight.open { last.position } else { route.length() };
         let mut remarks = self.remarks(&route, &timing, end)?;
         self.remark_caps(&mut remarks, &caps, end)?;
+        let at = self.run.piece(0).map(|piece| piece.link.step.at.clone());
         self.hand_out_up_to(end, !sight.open, settled, &mut joints, &remarks, out);
         self.run.way_to_rest = cut::moved_back(rest, end);
         self.run.keep_caps(&caps, end);
+        if !sight.open && !self.run.is_empty() {
+            out.extend(at.map(stops_on_the_way));
+        }
         Ok(true)
     }
 
@@ -110,8 +113,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let end = way.last().map_or(0.0, |piece| piece.end().position);
         let first = self.run.piece(0).map(|piece| piece.link.step.at.clone());
         self.hand_out_up_to(end, true, &way, joints, &Remarks::default(), out);
-        let text = "the robot stops on the way: its joints leave no motion that goes on at speed";
-        out.extend(first.map(|at| Planned { notices: vec![text.into()], ..Planned::part(&at) }));
+        out.extend(first.map(stops_on_the_way));
     }
 
     /// Hands out the motion up to a place of the run; there it `rests`, or goes on.
@@ -253,4 +255,9 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             }
         }
     }
+}
+
+fn stops_on_the_way<const N: usize>(at: Location) -> Planned<N> {
+    let text = "the robot stops on the way: its joints leave no motion that goes on at speed";
+    Planned { notices: vec![text.into()], ..Planned::part(&at) }
 }

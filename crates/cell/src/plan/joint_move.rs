@@ -157,7 +157,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     fn joint_move(&mut self, step: &Step, r#move: &Move) -> Result<JointMove<N>, Problem> {
         let start = self.held.as_ref().map_or(self.joints, |held| held.target);
         let goal = goal(&r#move.target, self.cell, self.arm, &start)?;
-        let name = || r#move.target.name.to_string();
+        let name = || r#move.target.to_string();
         let target = goal
             .joints
             .map_err(|error| Problem::Unreachable { name: name(), reason: self.arm.in_words(&error) })?;

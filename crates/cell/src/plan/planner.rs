@@ -392,6 +392,11 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
                 let poses: Vec<Pose> = goals.iter().map(|goal| goal.base_from_tcp).collect();
                 (tool_path::spline_piece(&poses, piece)?, goal)
             }
+            MovePath::Curve(piece) => {
+                let goal = target(&r#move.target)?;
+                self.tool = goal.tool;
+                (tool_path::curve(piece, &r#move.target, &goal.base_from_tcp, self.cell)?, Some(goal))
+            }
             MovePath::Linear | MovePath::Joint => {
                 let goal = target(&r#move.target)?;
                 self.tool = goal.tool;
@@ -399,9 +404,13 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             }
         };
         workspace::check_path(&path, &self.cell.safety)?;
-        let limits = speed::path_limits(&path, r#move, &self.cell.cartesian)?;
+        let mut permitted = speed::path_limits(&path, r#move, &self.cell.cartesian)?;
+        if let MovePath::Circular(_) | MovePath::Curve(_) = r#move.path {
+            permitted = speed::bending(&path, &permitted);
+        }
+        let limits = speed::gentle(&permitted);
         let pass = tool_path::pass(&r#move.zone, &self.cell.job);
-        Ok(Link { step: step.clone(), path, limits, goal, pass, arc: self.arc, notices })
+        Ok(Link { step: step.clone(), path, limits, permitted, goal, pass, arc: self.arc, notices })
     }
 
     /// Where an increment leads: in a frame, or joint by joint in pulses.

@@ -6,7 +6,7 @@ use seamline::kinematics::InverseError;
 use super::arm::{Arm, PlanningArm};
 use super::error::Problem;
 use crate::cell::Cell;
-use crate::job::{Coordinates, Frame, Rectangular, Target, joints_from_pulses};
+use crate::job::{Coordinates, Frame, Target, joints_from_pulses};
 
 /// Values that a robot's position has as a rule.
 const SIX: usize = 6;
@@ -41,7 +41,7 @@ pub(super) fn goal<const N: usize, K: PlanningArm<N>>(
     arm: &Arm<N, K>,
     reference: &[f64; N],
 ) -> Result<Goal<N>, Problem> {
-    let name = || target.name.to_string();
+    let name = || target.to_string();
     let tool = ToolPose::of(cell, target.position.tool)?;
     match &target.position.coordinates {
         Coordinates::Pulses(pulses) => {
@@ -51,7 +51,7 @@ pub(super) fn goal<const N: usize, K: PlanningArm<N>>(
             Ok(Goal { base_from_tcp, tool, joints: Ok(joints) })
         }
         Coordinates::Rectangular(position) => {
-            let taught = base_from_frame(position, cell, &name())? * position.pose();
+            let taught = base_from_frame(position.frame, cell, &name())? * position.pose();
             let base_from_tcp = with_taken_orientation(&taught, &tool, &arm.kinematics);
             let base_from_flange = base_from_tcp * tool.flange_from_tcp.inverse();
             let joints =
@@ -86,7 +86,7 @@ pub(super) fn pulse_increment<const N: usize, K>(
     arm: &Arm<N, K>,
     from: &[f64; N],
 ) -> Result<[f64; N], Problem> {
-    let name = target.name.to_string();
+    let name = target.to_string();
     let Coordinates::Pulses(pulses) = &target.position.coordinates else {
         return Err(Problem::StationPosition { name });
     };
@@ -105,8 +105,9 @@ fn joints_of<const N: usize, K>(pulses: &[i32], arm: &Arm<N, K>, name: &str) -> 
     joints_from_pulses(pulses, &arm.pulses_per_unit).ok_or_else(length)
 }
 
-fn base_from_frame(position: &Rectangular, cell: &Cell, name: &str) -> Result<Pose, Problem> {
-    match position.frame {
+/// The frame that a target is given in; `name` is the target's.
+pub(super) fn base_from_frame(frame: Frame, cell: &Cell, name: &str) -> Result<Pose, Problem> {
+    match frame {
         Frame::Base | Frame::Robot => Ok(Pose::identity()),
         Frame::User(number) => {
             let frame = cell.user_frame(number).ok_or(Problem::UnknownFrame { number })?;

@@ -17,6 +17,8 @@ use crate::record::{SegmentInfo, SegmentKind};
 
 /// Nominal time that one look ahead covers, in seconds. The timing settles what lies before the stop that it must assume at its end.
 const HORIZON: f64 = 1.0;
+/// A run of which so many horizons settle nothing is ended on the way.
+const FARTHEST: f64 = 8.0;
 /// A closed run that takes no longer than this many horizons is looked at whole.
 const WHOLE: f64 = 2.0;
 /// Two places of a path nearer than this are one: a nanometre.
@@ -29,6 +31,8 @@ pub(super) struct Link<const N: usize> {
     pub(super) step: Step,
     pub(super) path: Path,
     pub(super) limits: PathLimits,
+    /// What the cell permits to the tool on it: a corner may need more across the path than is of use along it.
+    pub(super) permitted: PathLimits,
     pub(super) goal: Option<Goal<N>>,
     /// How far from its end the tool may pass; `None` where the move ends at rest.
     pub(super) pass: Option<f64>,
@@ -79,6 +83,8 @@ pub(super) struct Run<const N: usize> {
     pub(super) speed: f64,
     /// How it would come to rest from there, as planned when less of it was known.
     pub(super) way_to_rest: Vec<TimingPiece>,
+    /// How many times as far as usual the next look goes: where a nearer one settled nothing, it would find the same again.
+    pub(super) farther: f64,
 }
 
 /// Why a move cannot be run on to.
@@ -112,7 +118,8 @@ impl<const N: usize> Link<N> {
 impl<const N: usize> Run<N> {
     /// Empty.
     pub(super) fn new(smear: Option<Smear>) -> Self {
-        Self { pieces: VecDeque::new(), smear, caps: Vec::new(), speed: 0.0, way_to_rest: Vec::new() }
+        let (caps, way_to_rest) = (Vec::new(), Vec::new());
+        Self { pieces: VecDeque::new(), smear, caps, speed: 0.0, way_to_rest, farther: 1.0 }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -145,6 +152,7 @@ impl<const N: usize> Run<N> {
         let lengths = [last.link.path.length(), link.path.length()];
         let speed = last.limits.speed.max(link.limits.speed);
         let permitted = last.link.pass.unwrap_or(0.0);
+        let of_both = [&last.link.permitted, &link.permitted];
         let blend = |error| passing([&last.path, &link.path], lengths, speed, error);
         let Some(mut corner) = blend(permitted)? else {
             self.add(link, link.path, 0.0, segment);
@@ -155,7 +163,7 @@ impl<const N: usize> Run<N> {
             // Best is what does not slow down the moves on either side, and next what is passed fastest.
             let worth = |blend: &Blend| {
                 let cap = corner_speed(blend, point, permitted, speed, &smear);
-                if cap < speed { cap.min(limits(blend, &last.limits, &link.limits).speed) } else { cap }
+                if cap < speed { cap.min(limits(blend, of_both).speed) } else { cap }
             };
             let blends = BLEND_SHARES.iter().filter_map(|share| blend(share * permitted).ok()?);
             corner = blends.max_by(|a, b| worth(a).total_cmp(&worth(b))).unwrap_or(corner);
@@ -163,7 +171,7 @@ impl<const N: usize> Run<N> {
         last.path = corner.before;
         last.info.rounded[1] = rounded(corner.trims[0], last.limits.speed, self.smear);
         *segment += 1;
-        let limits = limits(&corner, &last.limits, &link.limits);
+        let limits = limits(&corner, of_both);
         let piece = last.corner(&corner.path, limits, *segment);
         self.pieces.push_back(piece);
         self.add(link, corner.after, corner.trims[1], segment);
@@ -186,19 +194,19 @@ impl<const N: usize> Run<N> {
         }
     }
 
-    /// How far the next timing is to look, `factor` times as far as usual; `None` where more of the run must be known first.
-    pub(super) fn sight(&self, closed: bool, factor: f64) -> Option<Sight> {
+    /// How far the next timing is to look; `None` where more of the run must be known first.
+    pub(super) fn sight(&self, closed: bool) -> Option<Sight> {
         let last = self.pieces.back()?;
         let whole: f64 = self.pieces.iter().map(|piece| piece.path.length()).sum();
         let time: f64 = self.pieces.iter().map(|piece| piece.path.length() / piece.limits.speed).sum();
-        if closed && time <= WHOLE * HORIZON * factor {
+        if closed && time <= WHOLE * HORIZON * self.farther {
             return Some(Sight { to: whole, open: false });
         }
         // The end of the last move may yet become a corner.
         let certain =
             if closed { whole } else { whole - SHARE * last.link.path.length() - 2.0 * self.reach() };
-        let to = self.reached_in(HORIZON * factor);
-        (to < certain).then_some(Sight { to, open: true })
+        let to = self.reached_in(HORIZON * self.farther);
+        (to < certain).then_some(Sight { to, open: self.farther <= FARTHEST })
     }
 
     /// How far a place may slow down the way before it, on account of prefilters.
@@ -320,7 +328,7 @@ impl<const N: usize> Run<N> {
     /// Gives the run up: the steps that would have followed the piece with this number and its link.
     pub(super) fn give_up_after(&mut self, index: usize) -> Vec<Step> {
         let pieces = std::mem::take(&mut self.pieces);
-        self.speed = 0.0;
+        (self.speed, self.farther) = (0.0, 1.0);
         self.caps.clear();
         let Some(failed) = pieces.get(index).map(|piece| Arc::clone(&piece.link)) else { return Vec::new() };
         let mut steps = Vec::new();

@@ -13,10 +13,14 @@ use crate::job::{Move, Speed};
 const GAIN: f64 = 0.02;
 const BUILD_UP: f64 = 0.01;
 
+/// A path that could be run so many times as fast as programmed hardly bends.
+const STRAIGHT: f64 = 2.0;
 /// Places at which the bends of a path are looked at.
 const LOOKS: u32 = 8;
+/// Share of the cell's limits that is left to the motion along a path that bends, and to that across it, so that both together keep them.
+const ON_BENDS: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// The highest speed at which the tool has no more acceleration and jerk on the path's bends than the limits permit along it.
+/// The highest speed at which the tool has no more acceleration and jerk across the path, on its bends, than these limits permit.
 pub(super) fn on_bends(path: &Path, limits: &PathLimits) -> f64 {
     let at = |look: u32| path.jet(path.length() * f64::from(look) / f64::from(LOOKS)).linear;
     let of = |most: [f64; 2], [_, second, third]: [Vector3; 3]| {
@@ -25,6 +29,29 @@ pub(super) fn on_bends(path: &Path, limits: &PathLimits) -> f64 {
     let [second, third] = (0..=LOOKS).map(at).fold([0.0; 2], of).map(f64::sqrt);
     // Without bends both are infinite.
     (limits.acceleration / second).sqrt().min((limits.jerk / third).cbrt())
+}
+
+/// What a path that bends leaves of the cell's limits to the motion along it, and to that across it.
+pub(super) fn shared(limits: &PathLimits) -> PathLimits {
+    PathLimits { acceleration: ON_BENDS * limits.acceleration, jerk: ON_BENDS * limits.jerk, ..*limits }
+}
+
+/// The limits of a path that bends: as slow as its bends ask for.
+pub(super) fn bending(path: &Path, limits: &PathLimits) -> PathLimits {
+    let shared = shared(limits);
+    let across = on_bends(path, &shared);
+    // Where it hardly bends, they are what they were.
+    if across > STRAIGHT * limits.speed {
+        return *limits;
+    }
+    PathLimits { speed: limits.speed.min(across), ..shared }
+}
+
+/// These limits, with no more acceleration and jerk along the path than its speed is worth.
+pub(super) fn gentle(limits: &PathLimits) -> PathLimits {
+    let acceleration = limits.speed / GAIN;
+    let jerk = acceleration / BUILD_UP;
+    PathLimits { acceleration: limits.acceleration.min(acceleration), jerk: limits.jerk.min(jerk), ..*limits }
 }
 
 /// The tag that a speed is written with.
@@ -65,7 +92,5 @@ pub(super) fn path_limits(path: &Path, r#move: &Move, cell: &CartesianLimits) ->
     let share = r#move.acceleration.min(r#move.deceleration);
     let acceleration = share * permitted(cell.acceleration, cell.rotation_acceleration);
     let jerk = share * permitted(cell.jerk, cell.rotation_jerk);
-    let gentle = speed / GAIN;
-    let gentle_jerk = gentle / BUILD_UP;
-    Ok(PathLimits { speed, acceleration: acceleration.min(gentle), jerk: jerk.min(gentle_jerk) })
+    Ok(PathLimits { speed, acceleration, jerk })
 }

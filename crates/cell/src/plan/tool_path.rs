@@ -1,11 +1,13 @@
 //! The geometry of moves of the tool centre point.
 
-use seamline::geometry::Pose;
-use seamline::path::{Path, SplineError, spline};
+use nalgebra::Point3;
+use seamline::geometry::{Pose, PoseJet, Vector3};
+use seamline::path::{BlendError, Path, SplineError, spline};
 
 use super::error::Problem;
+use super::resolve::base_from_frame;
 use crate::cell::{Cell, JobRules};
-use crate::job::{ArcPart, Coordinates, Frame, SplinePiece, Target, Zone};
+use crate::job::{ArcPart, Coordinates, CurvePiece, Frame, Passage, SplinePiece, Target, Zone};
 
 pub(super) fn line(start: &Pose, end: &Pose) -> Path {
     Path::line(start, end)
@@ -27,7 +29,7 @@ pub(super) fn spline_piece(poses: &[Pose], piece: &SplinePiece) -> Result<Path, 
     let at_rest = Path::line(&Pose::identity(), &Pose::identity());
     let mut pieces = vec![at_rest; poses.len().saturating_sub(1)];
     let refused = |index: usize, reason: &str| Problem::Refused {
-        text: piece.points.get(index).map_or_else(|| "MOVS".into(), |point| format!("MOVS {}", point.name)),
+        text: piece.points.get(index).map_or_else(|| "MOVS".into(), |point| format!("MOVS {point}")),
         reason: reason.into(),
     };
     spline(poses, None, None, &mut pieces).map_err(|error| match error {
@@ -39,9 +41,33 @@ pub(super) fn spline_piece(poses: &[Pose], piece: &SplinePiece) -> Result<Path, 
     pieces.get(piece.end.wrapping_sub(1)).copied().ok_or_else(|| refused(piece.end, "it has no such point"))
 }
 
+/// A curve given in the frame of its target, with the target's orientation all along.
+pub(super) fn curve(piece: &CurvePiece, target: &Target, end: &Pose, cell: &Cell) -> Result<Path, Problem> {
+    let Coordinates::Rectangular(position) = &target.position.coordinates else {
+        return Err(Problem::StationPosition { name: target.to_string() });
+    };
+    let frame = base_from_frame(position.frame, cell, &target.to_string())?;
+    let jet = |passage: &Passage| {
+        let position = frame * Point3::from(passage.position_mm / 1000.0);
+        let linear = [
+            frame.rotation * passage.tangent,
+            frame.rotation * (passage.curvature_per_mm * 1000.0),
+            Vector3::zeros(),
+        ];
+        PoseJet { linear, ..PoseJet::at_rest(Pose::from_parts(position.coords.into(), end.rotation)) }
+    };
+    Path::blend(&jet(&piece.start), &jet(&piece.end)).map_err(|error| Problem::Refused {
+        text: "the curve".into(),
+        reason: match error {
+            BlendError::Coincident => "it ends where it starts".into(),
+            BlendError::AtRest | BlendError::Singular => "it stands still on its way".into(),
+        },
+    })
+}
+
 /// The pose after an increment in a frame.
 pub(super) fn increment(from: &Pose, target: &Target, frame: Frame, cell: &Cell) -> Result<Pose, Problem> {
-    let name = || target.name.to_string();
+    let name = || target.to_string();
     let Coordinates::Rectangular(increment) = &target.position.coordinates else {
         return Err(Problem::StationPosition { name: name() });
     };
@@ -70,5 +96,6 @@ pub(super) fn pass(zone: &Zone, rules: &JobRules) -> Option<f64> {
         Zone::Level(level) => rules.position_levels.get(usize::from(*level)).copied(),
         Zone::CornerRadius { mm } => Some(mm / 1000.0 * (std::f64::consts::SQRT_2 - 1.0)),
         Zone::Unspecified => Some(rules.corner_error),
+        Zone::Tolerance { mm } => Some(mm / 1000.0),
     }
 }

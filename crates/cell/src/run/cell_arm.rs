@@ -2,9 +2,9 @@
 
 use super::check::{CheckReport, check};
 use super::error::RunError;
+use super::program::Program;
 use super::session::{Progress, RunOptions, RunReport, run};
 use crate::cell::Cell;
-use crate::job::JobSet;
 use crate::plan::CellArm;
 
 impl CellArm {
@@ -12,10 +12,10 @@ impl CellArm {
     ///
     /// # Errors
     /// As there.
-    pub fn check(&self, jobs: &JobSet, cell: &Cell) -> Result<CheckReport, RunError> {
+    pub fn check(&self, program: &Program, cell: &Cell) -> Result<CheckReport, RunError> {
         match self {
-            Self::SixAxis(arm) => check(jobs, cell, &**arm),
-            Self::Scara(arm) => check(jobs, cell, &**arm),
+            Self::SixAxis(arm) => check(program, cell, &**arm),
+            Self::Scara(arm) => check(program, cell, &**arm),
         }
     }
 
@@ -25,14 +25,14 @@ impl CellArm {
     /// As there.
     pub fn run(
         &self,
-        jobs: &JobSet,
+        program: &Program,
         cell: &Cell,
         options: &RunOptions,
         progress: impl FnMut(Progress),
     ) -> Result<RunReport, RunError> {
         match self {
-            Self::SixAxis(arm) => run(jobs, cell, arm, options, progress),
-            Self::Scara(arm) => run(jobs, cell, arm, options, progress),
+            Self::SixAxis(arm) => run(program, cell, arm, options, progress),
+            Self::Scara(arm) => run(program, cell, arm, options, progress),
         }
     }
 }

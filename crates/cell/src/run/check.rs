@@ -2,9 +2,10 @@
 
 use super::announcement::announcement;
 use super::error::{Place, RunError};
+use super::program::Program;
 use super::walk::{WAIT_MAX, Walk};
 use crate::cell::{Cell, UnmetWait};
-use crate::job::{Action, Condition, JobSet, Location, Step};
+use crate::job::{Action, Condition, Location, Step};
 use crate::plan::{Arm, Planned, PlanningArm};
 
 /// Longest job that is checked: a job that loops for ever is checked so far, and said to.
@@ -44,22 +45,22 @@ pub struct Finding {
 /// # Errors
 /// Where the walk cannot even begin; problems on the way are in the report.
 pub fn check<const N: usize, K: PlanningArm<N>>(
-    jobs: &JobSet,
+    program: &Program,
     cell: &Cell,
     arm: &Arm<N, K>,
 ) -> Result<CheckReport, RunError> {
-    let report = walk_through(jobs, cell, arm, false)?;
+    let report = walk_through(program, cell, arm, false)?;
     // The robot of a job that reads inputs arrives at each point before the next instruction is read.
-    if report.reads_inputs { walk_through(jobs, cell, arm, true) } else { Ok(report) }
+    if report.reads_inputs { walk_through(program, cell, arm, true) } else { Ok(report) }
 }
 
 fn walk_through<const N: usize, K: PlanningArm<N>>(
-    jobs: &JobSet,
+    program: &Program,
     cell: &Cell,
     arm: &Arm<N, K>,
     in_step: bool,
 ) -> Result<CheckReport, RunError> {
-    let mut walk = Walk::new(jobs, cell, arm)?;
+    let mut walk = Walk::new(program, cell, arm)?;
     let mut report = CheckReport {
         findings: Vec::new(),
         errors: Vec::new(),
@@ -68,7 +69,7 @@ fn walk_through<const N: usize, K: PlanningArm<N>>(
         moves: 0,
         reads_inputs: false,
     };
-    while report.steps < STEPS_MAX && report.duration < DURATION_MAX {
+    while walk.is_straight() || (report.steps < STEPS_MAX && report.duration < DURATION_MAX) {
         let before = walk.inputs_read();
         match walk.next(report.duration) {
             Ok(None) => {
@@ -81,6 +82,7 @@ fn walk_through<const N: usize, K: PlanningArm<N>>(
                 report.reads_inputs |= walk.inputs_read() > before;
                 report.take(&mut walk, &step, in_step);
             }
+            Err(error) if walk.is_straight() => report.add_error(error),
             Err(error) => {
                 // The program itself fails: there is no next step.
                 report.finish(&mut walk);
@@ -90,10 +92,8 @@ fn walk_through<const N: usize, K: PlanningArm<N>>(
         }
     }
     report.finish(&mut walk);
-    let entry = jobs.entry();
     let text = format!("the job does not end within {:.0} h; it is checked so far", report.duration / 3600.0);
-    let at = Place { file: entry.file.to_string(), line: entry.line, column: 1 };
-    report.findings.push(Finding { at, text });
+    report.findings.push(Finding { at: program.start(), text });
     Ok(report)
 }
 

@@ -11,11 +11,11 @@ use super::check::{CheckReport, check};
 use super::clock::MonotonicClock;
 use super::error::RunError;
 use super::machine::{Devices, Machine};
+use super::program::Program;
 use super::realtime;
 use super::supervisor::Supervisor;
 use super::walk::Walk;
 use crate::cell::{Cell, Vibration};
-use crate::job::JobSet;
 use crate::plan::{Arm, PlanningArm};
 use crate::record::{Acceptance, Findings, JointInfo, Outcome, Recorder, RunInfo, SampleSender, Summary};
 use crate::sim::{SimulatedArc, SimulatedDrive};
@@ -66,27 +66,27 @@ pub struct RunReport {
 /// [`RunError::Check`] where the check finds that the job cannot run (then nothing is written); the file system's own.
 /// A fault in motion is no error: it stands in the report.
 pub fn run<const N: usize, K: PlanningArm<N> + Send>(
-    jobs: &JobSet,
+    program: &Program,
     cell: &Cell,
     arm: &Arm<N, K>,
     options: &RunOptions,
     mut progress: impl FnMut(Progress),
 ) -> Result<RunReport, RunError> {
-    let CheckReport { errors, duration, reads_inputs, .. } = check(jobs, cell, arm)?;
+    let CheckReport { errors, duration, reads_inputs, .. } = check(program, cell, arm)?;
     if !errors.is_empty() {
         return Err(RunError::Check(errors));
     }
     let path = options.out.join("recording.csv");
     let file = |source| RunError::File { path: path.display().to_string(), source };
     let drive = SimulatedDrive::from_cell(cell)?;
-    let info = run_info(jobs, cell, arm);
+    let info = run_info(program, cell, arm);
     fs::create_dir_all(&options.out).map_err(file)?;
     let (samples, recorder) = Recorder::start(&path, &info).map_err(file)?;
     let (producer, consumer) = RingBuffer::new(QUEUE);
     let devices = Devices { drive, arc: SimulatedArc::from_cell(cell) };
     let mut machine = Machine::new(cell, arm, devices, MonotonicClock::default(), consumer)?;
     machine.set_override(options.speed_override);
-    let walk = Walk::new(jobs, cell, arm)?;
+    let walk = Walk::new(program, cell, arm)?;
     let mut supervisor = Supervisor::new(walk, producer, reads_inputs, recorder, info.joints.clone());
     let started = Instant::now();
     let planned = duration / options.speed_override;
@@ -143,7 +143,7 @@ fn acceptance(cell: &Cell) -> Acceptance {
     acceptance
 }
 
-fn run_info<const N: usize, K>(jobs: &JobSet, cell: &Cell, arm: &Arm<N, K>) -> RunInfo {
+fn run_info<const N: usize, K>(program: &Program, cell: &Cell, arm: &Arm<N, K>) -> RunInfo {
     let joints = (0..N).map(|joint| JointInfo {
         name: arm.joint_names[joint].clone(),
         kind: arm.joint_kinds[joint],
@@ -153,7 +153,7 @@ fn run_info<const N: usize, K>(jobs: &JobSet, cell: &Cell, arm: &Arm<N, K>) -> R
         jerk: arm.limits.jerk[joint],
     });
     RunInfo {
-        job: jobs.entry().name.to_string(),
+        job: program.name().to_owned(),
         robot: arm.name.clone(),
         joints: joints.collect(),
         period: cell.cycle.period,

@@ -1,49 +1,69 @@
 //! Interpreter and planner side by side: one step of the job, and what it becomes.
 
 use super::error::{Place, RunError};
+use super::program::Program;
 use super::world::CellWorld;
 use crate::cell::{Cell, SpeedUnit};
-use crate::job::{Condition, Interpreter, JobSet, LinearSpeedUnit, Location, SignalKind, Step, World};
+use crate::gcode;
+use crate::job::{Condition, Interpreter, LinearSpeedUnit, Location, SignalKind, Step, World};
 use crate::plan::{Arm, PlanError, Planned, Planner, PlanningArm};
 
 /// How long a WAIT without limit is tried, in seconds.
 pub(super) const WAIT_MAX: f64 = 3600.0;
 
+/// What reads the program, by its language.
+#[derive(Debug)]
+enum Reader<'a> {
+    Inform(Box<Interpreter>),
+    GCode(Box<gcode::Interpreter<'a>>),
+}
+
 /// A walk through a job.
 #[derive(Debug)]
 pub(super) struct Walk<'a, const N: usize, K> {
-    jobs: &'a JobSet,
-    interpreter: Interpreter,
+    program: &'a Program,
+    reader: Reader<'a>,
     planner: Planner<'a, N, K>,
     world: CellWorld<'a, N, K>,
 }
 
 impl<'a, const N: usize, K: PlanningArm<N>> Walk<'a, N, K> {
-    pub(super) fn new(jobs: &'a JobSet, cell: &'a Cell, arm: &'a Arm<N, K>) -> Result<Self, RunError> {
-        let unit = match cell.job.speed_unit {
-            SpeedUnit::MillimetrePerSecond => LinearSpeedUnit::MillimetrePerSecond,
-            SpeedUnit::CentimetrePerMinute => LinearSpeedUnit::CentimetrePerMinute,
+    pub(super) fn new(program: &'a Program, cell: &'a Cell, arm: &'a Arm<N, K>) -> Result<Self, RunError> {
+        let planner = Planner::new(arm, cell, arm.home)
+            .map_err(|problem| RunError::Plan { at: program.start(), problem })?;
+        let world = CellWorld::new(cell, arm);
+        let reader = match program {
+            Program::Inform(jobs) => {
+                let unit = match cell.job.speed_unit {
+                    SpeedUnit::MillimetrePerSecond => LinearSpeedUnit::MillimetrePerSecond,
+                    SpeedUnit::CentimetrePerMinute => LinearSpeedUnit::CentimetrePerMinute,
+                };
+                Reader::Inform(Box::new(Interpreter::new(jobs, unit)))
+            }
+            Program::GCode(program) => {
+                Reader::GCode(Box::new(gcode::Interpreter::new(program, world.gcode_setup())))
+            }
         };
-        let entry = jobs.entry();
-        let at = Place { file: entry.file.to_string(), line: entry.line, column: 1 };
-        let planner = Planner::new(arm, cell, arm.home).map_err(|problem| RunError::Plan { at, problem })?;
-        Ok(Self {
-            jobs,
-            interpreter: Interpreter::new(jobs, unit),
-            planner,
-            world: CellWorld::new(cell, arm),
-        })
+        Ok(Self { program, reader, planner, world })
     }
 
     /// The next step of the program, read at `time` seconds after its start; `None` after the end.
     pub(super) fn next(&mut self, time: f64) -> Result<Option<Step>, RunError> {
         self.world.time = time;
         self.world.joints = *self.planner.joints();
-        let step = self.interpreter.next(&mut self.world)?;
+        let step = match &mut self.reader {
+            Reader::Inform(interpreter) => interpreter.next(&mut self.world)?,
+            Reader::GCode(interpreter) => interpreter.next_step()?,
+        };
         match (self.world.refused.take(), &step) {
             (Some(number), Some(step)) => Err(RunError::UnscriptedInput { at: self.place(&step.at), number }),
             _ => Ok(step),
         }
+    }
+
+    /// The program has no flow: it ends, and can be walked on behind a line that is wrong.
+    pub(super) fn is_straight(&self) -> bool {
+        matches!(self.reader, Reader::GCode(_))
     }
 
     /// Takes a step; hands out what is settled of the motion by now.
@@ -85,12 +105,6 @@ impl<'a, const N: usize, K: PlanningArm<N>> Walk<'a, N, K> {
 
     /// Where an instruction stands.
     pub(super) fn place(&self, at: &Location) -> Place {
-        let job = self.jobs.jobs().find(|job| job.name == at.job);
-        let statement = job.and_then(|job| job.program.iter().find(|s| s.line == at.line));
-        Place {
-            file: job.map_or_else(|| at.job.to_string(), |job| job.file.to_string()),
-            line: at.line,
-            column: statement.map_or(1, |statement| statement.column),
-        }
+        self.program.place(at)
     }
 }

@@ -3,6 +3,7 @@
 use seamline::geometry::Pose;
 
 use crate::cell::{Cell, WeldSpeedRule};
+use crate::gcode::Setup;
 use crate::job::{
     ArcCondition, Coordinates, Frame, JobPosition, Rectangular, SignalKind, Speed, World, joints_from_pulses,
     pulses_from_joints,
@@ -27,6 +28,20 @@ pub(super) struct CellWorld<'a, const N: usize, K> {
 impl<'a, const N: usize, K: PlanningArm<N>> CellWorld<'a, N, K> {
     pub(super) fn new(cell: &'a Cell, arm: &'a Arm<N, K>) -> Self {
         Self { cell, arm, time: 0.0, joints: arm.home, inputs_read: 0, refused: None }
+    }
+
+    /// What G-code leaves to the cell: G54 to G59 are its user frames 1 to 6.
+    pub(super) fn gcode_setup(&self) -> Setup {
+        let flange_from_tcp = self.flange_from_tcp(0).unwrap_or_else(Pose::identity);
+        let frame = |number: u32| self.cell.user_frame(number).map(|frame| frame.base_from_user);
+        Setup {
+            frames: [1, 2, 3, 4, 5, 6].map(frame),
+            start: self.arm.kinematics.forward(&self.joints) * flange_from_tcp,
+            configuration: self.arm.kinematics.configuration(&self.joints),
+            rapid_mm_s: self.cell.cartesian.speed * 1000.0,
+            joint_percent: self.cell.job.joint_speed * 100.0,
+            tolerance_mm: self.cell.job.corner_error * 1000.0,
+        }
     }
 
     fn single(&mut self, number: u32) -> u32 {

@@ -287,7 +287,7 @@ IMOV P002 V=10.0 PL=0";
     assert_eq!(zones, [Zone::Exact, Zone::Unspecified, Zone::Level(3), Zone::CornerRadius { mm: 2.5 }]);
     assert_eq!(all[3].2, [Note::TagWithoutEffect("NWAIT")]);
     assert!(all[3].1.no_wait);
-    assert_eq!(all[4].1.target.name, PositionName { local: false, kind: PositionKind::P, number: 2 });
+    assert_eq!(all[4].1.target.name, Some(PositionName { local: false, kind: PositionKind::P, number: 2 }));
     assert!(matches!(all[4].1.target.position.coordinates, Coordinates::Pulses(_)));
     let paths: Vec<&MovePath> = all.iter().map(|(_, m, _)| &m.path).collect();
     assert_eq!(*paths[5], MovePath::Incremental { frame: Some(Frame::User(2)) });
@@ -310,10 +310,11 @@ MOVS C00002 V=10.0";
     assert_eq!(error, None);
     let short = |step: &Step| match &step.action {
         Action::Move(m) => match &m.path {
-            MovePath::Linear if step.notes == [Note::SplineTooShort] => format!("short {}", m.target.name),
-            MovePath::Linear => format!("line {}", m.target.name),
+            MovePath::Linear if step.notes == [Note::SplineTooShort] => format!("short {}", m.target),
+            MovePath::Linear => format!("line {}", m.target),
             MovePath::Spline(piece) => {
-                let points: Vec<_> = piece.points.iter().map(|point| point.name.number.to_string()).collect();
+                let points: Vec<_> =
+                    piece.points.iter().map(|point| point.name.unwrap().number.to_string()).collect();
                 assert_eq!(piece.points[piece.end], m.target);
                 format!("spline {} to {}", points.join("-"), piece.end)
             }
@@ -342,7 +343,7 @@ MOVS C00002 V=10.0";
 /// Moves in short: `L5` straight to C5, `J5` joint, `W1-2-3` a whole arc, `F` its first half, `S` its second.
 fn shape(program: &str) -> String {
     let one = |motion: &Move| {
-        let number = motion.target.name.number;
+        let number = motion.target.name.unwrap().number;
         match &motion.path {
             MovePath::Joint => format!("J{number}"),
             MovePath::Circular(arc) => {
@@ -351,7 +352,8 @@ fn shape(program: &str) -> String {
                     ArcPart::First => 'F',
                     ArcPart::Second => 'S',
                 };
-                let points: Vec<String> = arc.points.iter().map(|p| p.name.number.to_string()).collect();
+                let points: Vec<String> =
+                    arc.points.iter().map(|p| p.name.unwrap().number.to_string()).collect();
                 format!("{letter}{}", points.join("-"))
             }
             _ => format!("L{number}"),

@@ -85,7 +85,7 @@ pub(crate) fn move_at(line: u32, path: MovePath, speed: Speed, coordinates: Coor
         line,
         Action::Move(Box::new(Move {
             path,
-            target: Target { name, position },
+            target: Target { name: Some(name), position },
             speed,
             speed_origin: SpeedOrigin::Written,
             zone: Zone::Exact,

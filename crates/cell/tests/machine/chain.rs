@@ -288,6 +288,7 @@ pub(crate) fn random_runs(seed: u64, cases: usize, cell: &Cell) {
                 Zone::Exact => 0.0,
                 Zone::Level(level) => way.cell.job.position_levels[usize::from(*level)] * 1000.0,
                 Zone::CornerRadius { mm } => mm * (2_f64.sqrt() - 1.0),
+                Zone::Tolerance { mm } => *mm,
                 Zone::Unspecified => way.cell.job.corner_error * 1000.0,
             };
             let error = trace.distance(&way.poses[k + 1]);

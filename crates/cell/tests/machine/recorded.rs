@@ -4,10 +4,9 @@ use std::path::Path;
 
 use nalgebra::{Isometry3, Vector3};
 use seamline_cell::cell::Cell;
-use seamline_cell::job::JobSet;
 use seamline_cell::plan::Arm;
 use seamline_cell::record::{Recording, Sample, SegmentKind, Verdict};
-use seamline_cell::run::{RunOptions, RunReport, run};
+use seamline_cell::run::{Program, RunOptions, RunReport, run};
 
 use crate::bench::{Ar2010, flexible, independent_forward, independent_torch, worst_shares};
 
@@ -20,7 +19,7 @@ fn recorded(job: &str) -> (Vec<Sample>, Cell, Ar2010) {
 fn recorded_in(cell: &Cell, job: &str, folder: &str) -> (RunReport, Vec<Sample>, Ar2010) {
     let arm = Arm::from_cell(cell).unwrap();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let jobs = JobSet::load(&root.join("examples/jobs").join(job)).unwrap();
+    let jobs = Program::load(&root.join("examples/jobs").join(job)).unwrap();
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
     let options = RunOptions { out: out.clone(), speed_override: 1.0, realtime: false };
     let report = run(&jobs, cell, &arm, &options, |_| {}).unwrap();

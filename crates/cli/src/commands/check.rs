@@ -12,7 +12,7 @@ use super::inputs::{CellArguments, load};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  seamline check examples/jobs/near_wrist.JBI")]
 pub(crate) struct Arguments {
-    /// The job file (INFORM, .JBI).
+    /// The job file: INFORM (.JBI), or G-code (.ngc, .nc, .gcode, .tap).
     job: PathBuf,
     #[command(flatten)]
     cell: CellArguments,
@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let inputs = load(&arguments.job, &arguments.cell)?;
-    let report = inputs.arm.check(&inputs.jobs, &inputs.cell)?;
+    let report = inputs.arm.check(&inputs.program, &inputs.cell)?;
     print(&report)?;
     match report.errors.as_slice() {
         [] => Ok(()),

@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 use seamline::vibration::Prefilter;
 use seamline_cell::cell::Cell;
-use seamline_cell::job::JobSet;
 use seamline_cell::plan::CellArm;
-use seamline_cell::run::RunError;
+use seamline_cell::run::{Program, RunError};
 
 use super::modes::prefilter;
 
@@ -46,7 +45,7 @@ impl CellArguments {
 /// A job and the cell it runs in.
 #[derive(Debug)]
 pub(crate) struct Inputs {
-    pub(crate) jobs: JobSet,
+    pub(crate) program: Program,
     pub(crate) cell: Cell,
     pub(crate) arm: CellArm,
 }
@@ -55,6 +54,6 @@ pub(crate) struct Inputs {
 pub(crate) fn load(job: &Path, cell: &CellArguments) -> anyhow::Result<Inputs> {
     let cell = cell.read()?;
     let arm = CellArm::from_cell(&cell).map_err(RunError::from)?;
-    let jobs = JobSet::load(job)?;
-    Ok(Inputs { jobs, cell, arm })
+    let program = Program::load(job)?;
+    Ok(Inputs { program, cell, arm })
 }

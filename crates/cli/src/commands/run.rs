@@ -17,7 +17,7 @@ use crate::report::write_report;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  seamline run examples/jobs/fillet.JBI --override 50 --out out/slow")]
 pub(crate) struct Arguments {
-    /// The job file (INFORM, .JBI).
+    /// The job file: INFORM (.JBI), or G-code (.ngc, .nc, .gcode, .tap).
     job: PathBuf,
     #[command(flatten)]
     cell: CellArguments,
@@ -77,7 +77,7 @@ fn run_with_progress(inputs: &Inputs, options: &RunOptions) -> anyhow::Result<Ru
             bar.set_message(format!("line {}", at.line));
         }
     };
-    let report = inputs.arm.run(&inputs.jobs, &inputs.cell, options, progress)?;
+    let report = inputs.arm.run(&inputs.program, &inputs.cell, options, progress)?;
     bar.finish_and_clear();
     Ok(report)
 }

@@ -115,6 +115,14 @@ impl Quintic {
         self.length
     }
 
+    /// Point and first derivative at the polynomial's own parameter, from 0 to 1 over the whole of it: a tenth of the cost of a
+    /// place by arc length.
+    #[must_use]
+    pub fn at_parameter(&self, u: f64) -> [Vector3; 2] {
+        let [point, first, ..] = derivatives(&self.coefficients, u);
+        [point, first]
+    }
+
     /// The part between two coordinates: the same polynomial.
     pub(super) fn part(&self, from: f64, to: f64) -> Self {
         Self { from: self.from + from, length: to - from, ..*self }

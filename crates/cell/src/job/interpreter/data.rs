@@ -154,7 +154,7 @@ impl Interpreter {
         let form = target.position.coordinates.form();
         if other.position.coordinates.form() != form {
             let mistake = Mistake::WrongPosition {
-                name: other.name.to_string(),
+                name: other.to_string(),
                 found: other.position.coordinates.form(),
                 expected: form,
             };

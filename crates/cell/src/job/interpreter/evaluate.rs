@@ -215,7 +215,7 @@ impl Interpreter {
             column: variable.column,
             mistake: Mistake::UnsetPosition { name: name.to_string() },
         })?;
-        Ok(Target { name, position })
+        Ok(Target { name: Some(name), position })
     }
 }
 

@@ -64,7 +64,7 @@ impl Interpreter {
                     let mistake = Mistake::Unknown { what: "position", name: name.to_string(), nearest };
                     Fault { column: *column, mistake }
                 })?;
-                Ok(Target { name, position })
+                Ok(Target { name: Some(name), position })
             }
             None => {
                 let mistake = Mistake::MissingTarget { instruction: step.word().to_owned() };

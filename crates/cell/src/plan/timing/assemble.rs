@@ -3,6 +3,7 @@
 use super::check::{Check, Load};
 use super::coordinate::End;
 use super::course::Limits;
+use super::gentler::Lower;
 use super::motion::{Timing, TimingKind, TimingPiece, duration, stretched};
 use super::plain::Plain;
 use super::slowdown::slowdowns;
@@ -57,8 +58,11 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
         let reach = REACH * self.longest_braking();
         let (load, mut busy) = self.survey(&plain, reach)?;
         if load.stretch() <= 1.0 + ROUNDING {
-            let settled = self.settled(&plain.pieces, &[]);
+            let settled = self.settled(self.limits, &plain.pieces, &[]);
             return Ok(Timing::new(plain.pieces, TimingKind::Plain, Vec::new()).settled_for(settled));
+        }
+        if let Some((gentler, limits)) = self.gentler(Lower::Ramps)? {
+            return self.lowered(&plain, gentler, &limits);
         }
         let mut workshop = Workshop::default();
         let mut parts = Vec::new();
@@ -77,8 +81,12 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
         let stretch = parts.iter().fold(1.0, |most: f64, part| most.max(part.passage.stretch));
         let pieces = joined(&plain, &parts);
         if parts.iter().all(|part| part.passage.good()) || (self.start > 0.0 && stretch <= BEARABLE) {
-            let (slowdowns, settled) = (slowdowns(self, &plain, &pieces)?, self.settled(&pieces, &parts));
+            let settled = self.settled(self.limits, &pieces, &parts);
+            let slowdowns = slowdowns(self, &plain, &pieces)?;
             return Ok(Timing::new(pieces, TimingKind::Optimized, slowdowns).settled_for(settled));
+        }
+        if let Some((gentler, limits)) = self.gentler(Lower::All)? {
+            return self.lowered(&plain, gentler, &limits);
         }
         if self.start > 0.0 {
             // All that is left takes time all along, the start included.
@@ -94,6 +102,18 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
         let slowdowns = slowdowns(self, &plain, &pieces)?;
         let settled = if self.open { 0 } else { pieces.len() };
         Ok(Timing::new(pieces, kind, slowdowns).settled_for(settled))
+    }
+
+    /// The timing of the plain motion under lower limits.
+    fn lowered(
+        &mut self,
+        plain: &Plain,
+        gentler: Plain,
+        limits: &Limits,
+    ) -> Result<Timing, TimingError<P::Error>> {
+        let settled = self.settled(limits, &gentler.pieces, &[]);
+        let slowdowns = slowdowns(self, plain, &gentler.pieces)?;
+        Ok(Timing::new(gentler.pieces, TimingKind::Gentler, slowdowns).settled_for(settled))
     }
 
     /// The longest time from full speed to rest, of any joint and of the path.
@@ -170,7 +190,7 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
 
     /// How many pieces, from the start, do not depend on what comes behind the end: up to the last place where
     /// the motion is plain, at the programmed speed and without acceleration, or at an anchor.
-    fn settled(&self, pieces: &[TimingPiece], parts: &[Part]) -> usize {
+    fn settled(&self, limits: &Limits, pieces: &[TimingPiece], parts: &[Part]) -> usize {
         if !self.open {
             return pieces.len();
         }
@@ -184,10 +204,10 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
         };
         // The next call starts from a plain motion, which has to be able to brake from there.
         let stops = |piece: &TimingPiece| {
-            Plain::new::<P::Error>(&self.limits.after(piece.position), piece.velocity).is_ok()
+            Plain::new::<P::Error>(&limits.after(piece.position), piece.velocity).is_ok()
         };
         let full = |piece: &TimingPiece| {
-            let limit = self.limits.within(piece.position, piece.position).speed;
+            let limit = limits.within(piece.position, piece.position).speed;
             piece.acceleration == 0.0 && piece.velocity >= limit * (1.0 - ROUNDING)
         };
         let ends = |piece: &TimingPiece| {

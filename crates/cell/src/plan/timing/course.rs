@@ -119,6 +119,18 @@ impl Limits {
         Self { stretches, length: self.length - place }
     }
 
+    /// The stretches that lie between two places, or reach into what does.
+    pub(super) fn between(&self, from: f64, to: f64) -> core::ops::Range<usize> {
+        let first = self.stretches.partition_point(|stretch| stretch.to <= from);
+        let last = self.stretches.partition_point(|stretch| stretch.to < to);
+        first..(last + 1).min(self.stretches.len())
+    }
+
+    /// Limits of each stretch, in order.
+    pub(super) fn all_mut(&mut self) -> impl Iterator<Item = &mut PathLimits> {
+        self.stretches.iter_mut().map(|stretch| &mut stretch.limits)
+    }
+
     /// Limits of each stretch, in order.
     pub(super) fn all(&self) -> impl Iterator<Item = &PathLimits> {
         self.stretches.iter().map(|stretch| &stretch.limits)
@@ -126,7 +138,7 @@ impl Limits {
 }
 
 /// The lesser limit of each order.
-pub(super) fn least(a: &PathLimits, b: &PathLimits) -> PathLimits {
+pub(in crate::plan) fn least(a: &PathLimits, b: &PathLimits) -> PathLimits {
     PathLimits {
         speed: a.speed.min(b.speed),
         acceleration: a.acceleration.min(b.acceleration),

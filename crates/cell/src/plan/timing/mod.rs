@@ -12,6 +12,7 @@
 //! # How
 //! 1. The course's stretches give a plain motion: their limits alone, a backward and a forward pass over the
 //!    speeds where they meet (`plain`). It is judged (`check`). If every joint can follow, it is the answer.
+//!    Where only ramps ask too much, by little, there is less acceleration and jerk in their stretches (`gentler`).
 //! 2. Around what the joints cannot follow, windows are laid, wide enough to brake in, from and to places where the
 //!    plain motion has no acceleration. Outside them it stays, at exactly the programmed speeds (`assemble`).
 //! 3. In each window a first guess of the motion (`crude`) gives a coordinate w close to time: s(w), a smooth
@@ -24,7 +25,8 @@
 //!    between knots, that limit is lowered there and the program is solved again from where it stood. What is
 //!    left, below 0.05 % of time as a rule, is taken away by slowing the window down all along, smoothly in and
 //!    out at ends in motion. A window that asks for more is laid wider.
-//! 5. If all that fails, the plain motion from rest is stretched as a whole until it fits. [`Timing::kind`] tells.
+//! 5. If all that fails, the stretches that ask too much are run slower; and if that fails too, the plain motion from rest is stretched as
+//!    a whole until it fits. [`Timing::kind`] tells.
 //!
 //! # A path that goes on
 //! With [`Course::open`] the path ends at rest only until more of it is known. [`Timing::settled`] tells which
@@ -55,6 +57,7 @@ mod check;
 mod coordinate;
 mod course;
 mod crude;
+mod gentler;
 mod interior_point;
 mod motion;
 mod plain;
@@ -63,6 +66,7 @@ mod slowdown;
 mod window;
 
 use course::Limits;
+pub(super) use course::least;
 use seamline::kinematics::JointJet;
 
 pub use course::{Course, Stretch};

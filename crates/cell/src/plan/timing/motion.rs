@@ -83,6 +83,8 @@ pub(super) fn starts(pieces: &[TimingPiece]) -> Vec<f64> {
 pub enum TimingKind {
     /// The path's limits alone: no joint has to slow it.
     Plain,
+    /// The same with lower limits in some stretches.
+    Gentler,
     /// Near time-optimal under the joints' limits.
     Optimized,
     /// The plain motion stretched as a whole until every joint keeps its limits: from rest always possible,

@@ -12,6 +12,8 @@ use super::{PathLimits, TimingError};
 
 /// Speeds this near are the same, as a share; a start may be too fast by this.
 const SAME: f64 = 1e-9;
+/// What rounding may make of a way, as a share.
+const ROUNDING: f64 = 1e-13;
 /// What is left of a stretch after its ramps counts as a cruise from this share of its length on.
 const NO_WAY: f64 = 1e-13;
 /// Rounds in which neighbours are taken as one: each halves the number of short stretches on a ramp.
@@ -190,21 +192,67 @@ impl Segment {
 
 /// The highest speeds at the segments' ends with which each can be passed.
 fn speeds<E>(segments: &[Segment], start: f64) -> Result<Vec<f64>, TimingError<E>> {
+    let calm = highest(segments);
+    if start >= 0.0 && start <= calm[0] * (1.0 + SAME) {
+        return Ok(forward(segments, start, calm));
+    }
+    let error = TimingError::Start { speed: start, limit: calm[0] };
+    hasty(segments, start, &calm).ok_or(error)
+}
+
+/// The highest speed at each segment's end from which all that follow can be.
+fn highest(segments: &[Segment]) -> Vec<f64> {
+    backward(segments, |next, segment| reach(next, segment.length(), &segment.limits))
+}
+
+/// Speeds from a start that is too fast for these, if there are any. To brake to a low speed takes more way than to brake
+/// to rest, since there is no acceleration left at either: so lower speeds than the highest may yet do.
+fn hasty(segments: &[Segment], start: f64, calm: &[f64]) -> Option<Vec<f64>> {
+    // Of all speeds to brake to, the highest or rest takes the least way.
+    let most = backward(segments, |next, segment| {
+        let from = |speed: f64| reach(speed, segment.length(), &segment.limits);
+        from(next).max(from(0.0))
+    });
+    let mut speeds = vec![start];
+    for (index, segment) in segments.iter().enumerate() {
+        let from = speeds[index];
+        let reached = reach(from, segment.length(), &segment.limits);
+        let [calm, most] = [calm[index + 1], most[index + 1]].map(|speed| speed.min(reached));
+        let passes =
+            |to: f64, slack: f64| segment.ramp(from, to).distance() <= segment.length() * (1.0 + slack);
+        speeds.push(if passes(calm, ROUNDING) { calm } else { highest_below(most, |to| passes(to, 0.0))? });
+    }
+    (start >= 0.0).then_some(speeds)
+}
+
+/// The highest speed at each segment's end, from the last one on; `before` is what the next one permits in front of a segment.
+fn backward(segments: &[Segment], before: impl Fn(f64, &Segment) -> f64) -> Vec<f64> {
     let mut speeds = vec![0.0; segments.len() + 1];
     for (index, segment) in segments.iter().enumerate().rev() {
-        let before = if index == 0 { f64::INFINITY } else { segments[index - 1].limits.speed };
-        let most = reach(speeds[index + 1], segment.length(), &segment.limits);
-        speeds[index] = most.min(segment.limits.speed).min(before);
+        let neighbour = if index == 0 { f64::INFINITY } else { segments[index - 1].limits.speed };
+        speeds[index] = before(speeds[index + 1], segment).min(segment.limits.speed).min(neighbour);
     }
-    if !(start >= 0.0 && start <= speeds[0] * (1.0 + SAME)) {
-        return Err(TimingError::Start { speed: start, limit: speeds[0] });
-    }
+    speeds
+}
+
+/// These speeds, as far as the start and what follows it reach them.
+fn forward(segments: &[Segment], start: f64, mut speeds: Vec<f64>) -> Vec<f64> {
     speeds[0] = start;
     for (index, segment) in segments.iter().enumerate() {
         let most = reach(speeds[index], segment.length(), &segment.limits);
         speeds[index + 1] = speeds[index + 1].min(most);
     }
-    Ok(speeds)
+    speeds
+}
+
+/// The highest speed, from rest on, up to which all pass; `None` where not even rest does.
+fn highest_below(speed: f64, passes: impl Fn(f64) -> bool) -> Option<f64> {
+    let (mut low, mut high) = (0.0, speed);
+    for _ in 0..BISECTIONS {
+        let middle = low + (high - low) / 2.0;
+        if passes(middle) { low = middle } else { high = middle }
+    }
+    passes(low).then_some(low)
 }
 
 /// Neighbours taken as one, where the speed at which they meet is set by how short they are and the way through
@@ -377,6 +425,7 @@ mod tests {
     #[test]
     fn every_chain_keeps_the_limits_of_each_stretch() {
         let mut seed = 1;
+        let mut hasty = 0;
         for case in 0..300 {
             let count = 1 + (40.0 * random(&mut seed)) as usize;
             let mut to = 0.0;
@@ -394,7 +443,14 @@ mod tests {
             match Plain::new::<()>(&limits, stretches[0].limits.speed) {
                 Ok(moving) => {
                     assert_sound(&moving, &stretches, stretches[0].limits.speed, &format!("chain {case}"));
-                    assert!(moving.duration < still.duration);
+                    // A start that leaves no way to the highest speeds may cost more than it brings.
+                    let segments: Vec<Segment> =
+                        limits.parts().map(|(from, to, limits)| Segment { from, to, limits }).collect();
+                    if stretches[0].limits.speed <= highest(&segments)[0] * (1.0 + SAME) {
+                        assert!(moving.duration < still.duration);
+                    } else {
+                        hasty += 1;
+                    }
                 }
                 Err(TimingError::Start { speed, limit }) => {
                     let moving = Plain::new::<()>(&limits, limit).unwrap();
@@ -403,6 +459,19 @@ mod tests {
                 }
                 Err(error) => panic!("{error:?}"),
             }
+        }
+        assert!(hasty > 0, "{hasty}");
+    }
+
+    /// A corner that was known by its first 8 µm, and then whole: the way to brake to its speed is longer than the way to rest was.
+    #[test]
+    fn what_braked_to_rest_passes_when_the_path_goes_on() {
+        let line = PathLimits { speed: 0.04, acceleration: 2.0, jerk: 200.0 };
+        let corner = PathLimits { speed: 0.0047, ..line };
+        let known = |to: f64| [Stretch { to: 0.61018e-3, limits: line }, Stretch { to, limits: corner }];
+        for to in [0.618e-3, 0.664e-3] {
+            let stretches = known(to);
+            assert_sound(&plain(&stretches, 0.04), &stretches, 0.04, &format!("{to}"));
         }
     }
 
