@@ -62,19 +62,21 @@ impl WayToRest {
         inside.then_some(Self { level: n, level_change, side: m, change, taken: 0.0 })
     }
 
-    /// The next change of the second difference.
-    fn next(&mut self) -> f64 {
+    /// The next position, from the last three (newest first).
+    fn next(&mut self, [d0, d1, d2]: [f64; 3]) -> f64 {
+        if self.taken >= self.level + 2.0 * self.side {
+            return d0;
+        }
         let step = self.taken - self.level;
         self.taken += 1.0;
-        if step < 0.0 {
+        let change = if step < 0.0 {
             self.level_change
         } else if step < self.side {
             self.change
-        } else if step < 2.0 * self.side {
-            -self.change
         } else {
-            0.0
-        }
+            -self.change
+        };
+        d0 + (d0 - d1) + (d0 - 2.0 * d1 + d2) + change
     }
 }
 
@@ -97,10 +99,9 @@ impl Guard {
 
     /// The next control point: what is asked, or as far towards it from the way to rest as is safe. And whether it is what was asked.
     pub(super) fn next(&mut self, asked: Offset) -> (Offset, bool) {
-        let [d0, d1, d2] = self.points;
         let mut ways = self.rest;
-        let change = Offset::new(ways[0].next(), ways[1].next());
-        let safe = d0 + (d0 - d1) + (d0 - d1 * 2.0 + d2) + change;
+        let axis = |axis: usize| self.points.map(|point| point[axis]);
+        let safe = Offset::new(ways[0].next(axis(0)), ways[1].next(axis(1)));
         let mut share = 1.0;
         for _ in 0..=HALVINGS {
             let candidate = if share == 1.0 { asked } else { safe + (asked - safe) * share };
@@ -130,5 +131,62 @@ impl Guard {
         let [d0, d1, _] = self.points;
         self.points = [point, d0, d1];
         self.rest = rest;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOUNDS: Bounds = Bounds { offset: 1.0, step: 0.05, third: 0.004 };
+
+    /// A small generator, so that a seed names a case.
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 33) as f64 / (1_u64 << 30) as f64 - 1.0
+    }
+
+    /// Followed by NaN and by wild demands, from 20,000 states: every point keeps all bounds, and NaN ends at rest.
+    #[test]
+    fn whatever_is_asked_the_bounds_are_kept() {
+        let mut state = 3;
+        let mut guard = Guard::at_rest(BOUNDS, Offset::new(0.3, -0.9));
+        for run in 0..20_000 {
+            let level = Offset::new(random(&mut state), random(&mut state)) * 1.5;
+            for _ in 0..run % 40 {
+                let before = guard;
+                let noise = Offset::new(random(&mut state), random(&mut state)) * 0.1;
+                let (next, _) = guard.next(level + noise);
+                assert_kept(&before, &next);
+            }
+            if run % 10 == 0 {
+                // At most n + 2m steps, of which the bounds leave this many.
+                for _ in 0..40 {
+                    let before = guard;
+                    let (next, as_asked) = guard.next(Offset::new(f64::NAN, 0.0));
+                    assert!(!as_asked);
+                    assert_kept(&before, &next);
+                }
+                let [d0, d1, d2] = *guard.points();
+                assert!(d0 == d1 && d1 == d2, "{guard:?}");
+            }
+        }
+    }
+
+    fn assert_kept(before: &Guard, next: &Offset) {
+        let rounding = 1e-13;
+        assert!(next.amax() <= BOUNDS.offset + rounding, "{before:?} {next}");
+        assert!((next - before.points()[0]).amax() <= BOUNDS.step + rounding, "{before:?} {next}");
+        assert!(before.third(next).norm() <= BOUNDS.third + rounding, "{before:?} {next}");
+    }
+
+    #[test]
+    fn what_is_smooth_passes_as_it_is() {
+        let mut guard = Guard::at_rest(BOUNDS, Offset::zeros());
+        for k in 0..500 {
+            // Third difference about 0.5·0.1³, step 0.05.
+            let asked = Offset::new(0.25 * (1.0 - (0.1 * f64::from(k)).cos()), 0.0);
+            assert_eq!(guard.next(asked), (asked, true), "{k}");
+        }
     }
 }

@@ -10,6 +10,7 @@
 
 mod accuracy;
 mod events;
+mod hostile;
 mod naive;
 mod paths;
 #[path = "../otg_support/random.rs"]
