@@ -10,10 +10,14 @@
 
 mod accuracy;
 mod events;
+mod geometry;
 mod hostile;
+mod lost;
 mod naive;
 mod paths;
 #[path = "../otg_support/random.rs"]
 #[allow(dead_code, unreachable_pub, reason = "shared with the generator's tests, which use all of it")]
 mod random;
+mod readings;
 mod simulation;
+mod standing;

@@ -2,7 +2,8 @@
 
 use nalgebra::Unit;
 use seamline::geometry::{Pose, Rotation, Vector3};
-use seamline::path::Path;
+use seamline::path::{Path, spline};
+use seamline::seam::PathChain;
 
 const MM: f64 = 1e-3;
 
@@ -43,3 +44,22 @@ pub(crate) fn arc(radius: f64, length: f64, work: f64, travel: f64) -> Path {
 }
 
 pub(crate) const LENGTH: f64 = 300.0 * MM;
+
+/// A curve in space through poses with a turning torch, as the moves of a weld would have it.
+pub(crate) fn curve() -> PathChain<8> {
+    let at = |k: usize| {
+        let way = 60.0 * MM * k as f64;
+        let position = Vector3::new(way, 40.0 * MM * (way / 0.15).sin(), 15.0 * MM * (way / 0.1).cos());
+        let tangent = Vector3::new(1.0, 0.27 * (way / 0.15).cos(), -0.15 * (way / 0.1).sin()).normalize();
+        let up = (Vector3::z() - tangent * tangent.z).normalize();
+        placed(torch(position, tangent, up, 0.3 + 0.1 * k as f64, 0.2 - 0.05 * k as f64))
+    };
+    let poses: [Pose; 7] = core::array::from_fn(at);
+    let mut pieces = [Path::line(&poses[0], &poses[1]); 6];
+    spline(&poses, None, None, &mut pieces).expect("a spline");
+    let mut chain = PathChain::new(0.0);
+    for piece in &pieces {
+        chain.push(piece).expect("smooth");
+    }
+    chain
+}

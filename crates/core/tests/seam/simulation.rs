@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use seamline::geometry::{Pose, Vector3};
 use seamline::path::SeamFrame;
 use seamline::seam::{
-    LaneJet, Offset, Reading, SeamTracker, Sensor, Settings, TaughtPath, corrected, foot, speed_factor,
+    LaneJet, Lost, Offset, Reading, SeamTracker, Sensor, Settings, TaughtPath, corrected, foot, speed_factor,
 };
 
 use crate::random::Random;
@@ -147,6 +147,18 @@ pub(crate) struct World<'a, P, S> {
     pub(crate) delay: usize,
     in_flight: VecDeque<(f64, Reading)>,
     next_exposure: f64,
+    /// Where the torch was when the seam was first lost, and what was seen by then.
+    pub(crate) lost: Option<(f64, Lost)>,
+    /// All that the tracker was told.
+    pub(crate) cycles: Vec<Cycle>,
+}
+
+/// What the tracker is told in one cycle.
+pub(crate) struct Cycle {
+    pub(crate) time: f64,
+    pub(crate) s: f64,
+    pub(crate) measured: Pose,
+    pub(crate) arrived: Vec<Reading>,
 }
 
 /// The sensor of a laser that sits on the torch as it is posed at the path's start.
@@ -166,7 +178,18 @@ impl<'a, P: TaughtPath, S: Seam> World<'a, P, S> {
         let sensor = sensor(path, &laser);
         let mut random = Random(seed);
         let next_exposure = random.uniform(0.0, 1.0 / laser.rate);
-        Self { path, seam, laser, sensor, random, delay: 8, in_flight: VecDeque::new(), next_exposure }
+        Self {
+            path,
+            seam,
+            laser,
+            sensor,
+            random,
+            delay: 8,
+            in_flight: VecDeque::new(),
+            next_exposure,
+            lost: None,
+            cycles: Vec::new(),
+        }
     }
 
     fn seam_point(&self, s: f64, seen: bool) -> Vector3 {
@@ -229,9 +252,12 @@ impl<'a, P: TaughtPath, S: Seam> World<'a, P, S> {
             let command = corrected(&self.path.jet(torch.s), &lane).expect("a frame").pose;
             let (near, measured) = torch.follow(&command);
             tracker.step(torch.time, torch.s, &measured, last);
-            for reading in self.readings(torch.time, torch.s, &measured) {
-                let _ = tracker.take(self.path, &reading);
+            let arrived = self.readings(torch.time, torch.s, &measured);
+            for reading in &arrived {
+                let _ = tracker.take(self.path, reading);
             }
+            self.cycles.push(Cycle { time: torch.time, s: torch.s, measured, arrived });
+            self.lost = self.lost.or(tracker.lost().map(|lost| (torch.s, lost)));
             self.score(&mut figures, &measured, near, from);
             torch.motion_figures(&mut figures, settings.speed);
             torch.s = self.advance(&tracker, torch.s, settings.speed);
