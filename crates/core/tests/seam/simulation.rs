@@ -151,6 +151,8 @@ pub(crate) struct World<'a, P, S> {
     pub(crate) lost: Option<(f64, Lost)>,
     /// All that the tracker was told.
     pub(crate) cycles: Vec<Cycle>,
+    /// Where the torch went: path coordinate and offset.
+    pub(crate) track: Vec<(f64, Offset)>,
 }
 
 /// What the tracker is told in one cycle.
@@ -189,6 +191,7 @@ impl<'a, P: TaughtPath, S: Seam> World<'a, P, S> {
             next_exposure,
             lost: None,
             cycles: Vec::new(),
+            track: Vec::new(),
         }
     }
 
@@ -276,12 +279,12 @@ impl<'a, P: TaughtPath, S: Seam> World<'a, P, S> {
         s + PERIOD * rate(s + 0.5 * PERIOD * rate(s))
     }
 
-    pub(crate) fn score(&self, figures: &mut Figures, measured: &Pose, near: f64, from: f64) {
+    pub(crate) fn score(&mut self, figures: &mut Figures, measured: &Pose, near: f64, from: f64) {
         let Some(foot) = foot(self.path, &measured.translation.vector, near) else { return };
-        if foot.s < from {
-            return;
+        self.track.push((foot.s, foot.offset));
+        if foot.s >= from {
+            figures.add(foot.offset - self.seam.offset(foot.s));
         }
-        figures.add(foot.offset - self.seam.offset(foot.s));
     }
 }
 
