@@ -67,26 +67,23 @@ pub(super) fn estimate(bins: &Bins, design: &Design, s: f64, due: bool) -> Optio
     }
     let before = bins.nearest_before(s, s - LONGEST_BRIDGE).map(|bin| bin.s);
     let after = bins.nearest_after(s, s + LONGEST_BRIDGE).map(|bin| bin.s);
+    let footed = after.is_some_and(|after| seen_to - after >= FOOTING);
     let estimate = match (before, after) {
         (Some(before), Some(after)) if after - before <= design.gap => {
             local(bins, s, half).map(Estimate::Seen)
         }
-        (Some(before), Some(after)) => {
+        (Some(before), Some(after)) if after - before <= LONGEST_BRIDGE && footed => {
             if !due && seen_to < after + FAR_SIDE {
                 return None;
             }
-            if after - before <= LONGEST_BRIDGE && seen_to - after >= FOOTING {
-                bridge(bins, before, after, seen_to).map(Estimate::Seen)
-            } else if after - before > LONGEST_BRIDGE {
-                ahead(bins, after, design)
-            } else {
-                trend(bins, before, design, half).map(Estimate::Lost)
-            }
+            bridge(bins, before, after, seen_to).map(Estimate::Seen)
         }
+        _ if !due => return None,
+        (Some(before), Some(after)) if after - before > LONGEST_BRIDGE => ahead(bins, after, design),
         (Some(before), None) if s - before <= design.spacing => local(bins, s, half).map(Estimate::Seen),
-        (Some(before), None) => trend(bins, before, design, half).map(Estimate::Lost),
+        (Some(before), _) => trend(bins, before, design, half).map(Estimate::Lost),
         (None, Some(after)) => ahead(bins, after, design),
-        (None, _) => None,
+        (None, None) => None,
     };
     Some(estimate.unwrap_or(Estimate::Nothing))
 }
