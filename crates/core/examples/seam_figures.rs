@@ -63,6 +63,24 @@ fn table() {
     }
 }
 
+/// What a sensor costs that sits 0.5 mm farther ahead than its calibration says.
+fn calibration() {
+    let path = paths::line(paths::LENGTH, 0.6, 0.2);
+    let laser = Laser { look_ahead: Laser::USUAL.look_ahead + 0.5 * MM, ..Laser::USUAL };
+    for speed in [10.0, 100.0] {
+        let mut worst = Figures::default();
+        for seed in 0..SEEDS {
+            let seam = Sine::random(&mut Random(1000 + seed));
+            worst.keep_worst(&tracked(
+                &mut World::new(&path, &seam, laser, seed),
+                speed * MM,
+                Filter::Regression,
+            ));
+        }
+        println!("0.5 mm farther ahead than calibrated, line, {speed} mm/s: {worst}");
+    }
+}
+
 /// A wandering seam with 20 mm of it not to be seen.
 struct Gapped(Sine);
 
@@ -107,5 +125,6 @@ fn main() -> std::io::Result<()> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| "docs/figures".to_owned());
     figure(std::path::Path::new(&folder))?;
     table();
+    calibration();
     Ok(())
 }

@@ -19,5 +19,6 @@ mod paths;
 #[allow(dead_code, unreachable_pub, reason = "shared with the generator's tests, which use all of it")]
 mod random;
 mod readings;
+#[allow(dead_code, reason = "shared with the examples")]
 mod simulation;
 mod standing;

@@ -81,6 +81,27 @@ fn assert_recorded(tracker: &SeamTracker, points: &[seamline::seam::ControlPoint
     assert_eq!(record.at(lane.known_to() + 1.0).derivatives, [Offset::zeros(); 3]);
 }
 
+/// Told the same again, a tracker freezes the same lane, bit for bit.
+#[test]
+fn the_same_readings_make_the_same_lane() {
+    let path = line(LENGTH, 0.6, 0.2);
+    let seam = Sine::random(&mut Random(3));
+    let mut world = World::new(&path, &seam, Laser::USUAL, 3);
+    let settings = Settings::new(sensor(&path, &Laser::USUAL), SPEED);
+    let (_, first) = world.run(&settings, 0.0);
+    let mut again = SeamTracker::try_new(&settings, 0.0, Offset::zeros()).unwrap();
+    for cycle in &world.cycles {
+        again.step(cycle.time, cycle.s, &cycle.measured, LENGTH);
+        for reading in &cycle.arrived {
+            let _ = again.take(&path, reading);
+        }
+    }
+    let all = first.lane().next();
+    assert_eq!(all, again.lane().next());
+    assert!(all > 140 && (0..all).all(|k| first.lane().point(k) == again.lane().point(k)));
+    assert_eq!(first.counts(), again.counts());
+}
+
 /// Several moves in one weld, in space, with a torch that turns.
 #[test]
 fn a_chain_of_curves_is_tracked() {
