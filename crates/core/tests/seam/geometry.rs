@@ -1,10 +1,10 @@
 //! The path frame, the motion with an offset in it, and what makes a chain or a sensor acceptable.
 
 use seamline::geometry::{Pose, PoseJet, Vector3};
-use seamline::path::Path;
+use seamline::path::{Path, SeamFrame};
 use seamline::seam::{
-    ChainError, Filter, Frame, LaneJet, Offset, PathChain, Sensor, Settings, SettingsError, TaughtPath,
-    corrected, speed_factor,
+    ChainError, Filter, LaneJet, Offset, PathChain, Sensor, Settings, SettingsError, TaughtPath, corrected,
+    speed_factor,
 };
 
 use crate::paths::{arc, curve, line};
@@ -31,9 +31,9 @@ fn differences(path: &impl TaughtPath, s: f64) -> [Vector3; 3] {
     let h = 0.5 * MM;
     let at = |k: f64| {
         let jet = path.jet(s + k * h);
-        let frame = Frame::of(&jet).unwrap();
+        let frame = SeamFrame::of(&jet).unwrap();
         let offset = lane(s + k * h).offset;
-        jet.pose.translation.vector + frame.left * offset.x + frame.up * offset.y
+        jet.pose.translation.vector + frame.y * offset.x + frame.z * offset.y
     };
     let p = [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0].map(at);
     [
@@ -76,9 +76,9 @@ fn the_speed_factor_is_the_length_of_the_first_derivative() {
 fn the_frame_is_that_of_a_welder() {
     let down = nalgebra::UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
     let at = |x: f64, z: f64| Pose::from_parts(Vector3::new(x, 0.0, z).into(), down);
-    let frame = Frame::of(&Path::line(&at(0.0, 0.0), &at(1.0, 0.0)).jet(0.5)).unwrap();
-    assert!((frame.left - Vector3::y()).norm() < 1e-12 && (frame.up - Vector3::z()).norm() < 1e-12);
-    assert_eq!(Frame::of(&Path::line(&at(0.0, 0.0), &at(0.01, 1.0)).jet(0.5)), None);
+    let frame = SeamFrame::of(&Path::line(&at(0.0, 0.0), &at(1.0, 0.0)).jet(0.5)).unwrap();
+    assert!((frame.y - Vector3::y()).norm() < 1e-12 && (frame.z - Vector3::z()).norm() < 1e-12);
+    assert_eq!(SeamFrame::of(&Path::line(&at(0.0, 0.0), &at(0.01, 1.0)).jet(0.5)), None);
     assert_eq!(Sensor::mounting(&Path::line(&at(0.0, 0.0), &at(0.0, 1.0)).jet(0.5), 0.03), None);
 }
 
@@ -93,7 +93,7 @@ fn a_chain_goes_on_smoothly_or_not_at_all() {
     );
     let end = whole.pose(0.1);
     let aside = Pose::from_parts(
-        (end.translation.vector + Frame::of(&whole.jet(0.1)).unwrap().left * 0.1).into(),
+        (end.translation.vector + SeamFrame::of(&whole.jet(0.1)).unwrap().y * 0.1).into(),
         end.rotation,
     );
     assert!(matches!(chain.push(&Path::line(&end, &aside)), Err(ChainError::Kink { angle }) if angle > 1.5));
