@@ -76,6 +76,42 @@ fn the_same_job_twice_gives_the_same_recording() {
     assert!(bytes("twice-1") == bytes("twice-2"));
 }
 
+/// A recording's lines in which the arc is on.
+fn lit(recording: &str) -> usize {
+    let column = recording.lines().next().and_then(|head| head.split(',').position(|name| name == "arc"));
+    let column = column.expect("a column arc");
+    recording.lines().filter(|line| line.split(',').nth(column) == Some("1")).count()
+}
+
+/// The arc's misfires are drawn from the cell's seed: the same seed, the same recording; another seed, another one.
+#[test]
+fn the_same_seed_gives_the_same_recording_bit_by_bit() {
+    let recording = |name: &str, seed: u32| {
+        let out = folder(name);
+        let cell = out.join("cell.toml");
+        let text_of_cell =
+            format!("[arc]\nstrikes = 20\n[simulation]\nseed = {seed}\narc_misfire_percent = 50");
+        fs::write(&cell, text_of_cell).expect("a cell file");
+        let arguments = ["run", "examples/jobs/fillet.JBI", "--out", text(&out), "--cell", text(&cell)];
+        assert!(seamline(&arguments).status.success());
+        fs::read(out.join("recording.csv")).expect("a recording")
+    };
+    let first = recording("seed-1", 3);
+    assert!(first == recording("seed-2", 3));
+    assert!((4..20).any(|seed| first != recording("seed-3", seed)));
+}
+
+#[test]
+fn a_dry_run_moves_the_same_way_without_an_arc() {
+    let (wet, dry) = (run_example("fillet", &[]), run_example("fillet", &["--dry-run"]));
+    assert_eq!(dry.1["verdict"], "ok");
+    let read = |out: &Path| fs::read_to_string(out.join("recording.csv")).expect("a recording");
+    assert!(lit(&read(&wet.0)) > 1_000);
+    assert_eq!(lit(&read(&dry.0)), 0);
+    let duration = |summary: &Value| summary["duration_s"].as_f64().unwrap_or(0.0);
+    assert!((0.0..0.1).contains(&(duration(&wet.1) - duration(&dry.1))), "less the ignition");
+}
+
 #[test]
 fn check_names_the_slowdown_before_anything_moves() {
     let output = seamline(&["check", "examples/jobs/near_wrist.JBI"]);

@@ -183,6 +183,8 @@ pub struct ArcPolicy {
     pub speed_tolerance: f64,
     /// Hold the override at 100 % while the arc is on.
     pub lock_override: bool,
+    /// Nothing is lit: jobs run dry.
+    pub dry_run: bool,
     /// Seconds that a strike may take.
     pub strike: f64,
     /// How often the arc is struck before it counts as not lit.
@@ -205,6 +207,7 @@ impl ArcPolicy {
             refuse_slowdown: section.boolean("refuse_slowdown")?,
             speed_tolerance: section.number("speed_tolerance_percent", Unit::Percent, 0.0..=50.0)?,
             lock_override: section.boolean("lock_override")?,
+            dry_run: section.boolean("dry_run")?,
             strike: section.number("strike_time_s", Unit::Plain, 0.01..=60.0)?,
             strikes: section.integer("strikes", 1..=20)?,
             strike_pause: section.number("strike_pause_s", Unit::Plain, 0.0..=60.0)?,

@@ -211,7 +211,7 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock
 pub fn arc_rules(cell: &Cell) -> ArcRules {
     let policy = &cell.arc;
     ArcRules {
-        dry: false,
+        dry: policy.dry_run,
         strike: policy.strike,
         strikes: policy.strikes,
         pause: policy.strike_pause,

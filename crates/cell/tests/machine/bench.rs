@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
+use seamline::arc::ArcSource;
 use seamline::control::{
     ArcRules, Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, Mode, NoClock,
     PrefilterEntry, ServoModel,
@@ -17,8 +18,8 @@ use seamline_cell::job::{
     SpeedOrigin, Step, Target, Zone, pulses_from_joints,
 };
 use seamline_cell::plan::{Arm, PlanError, Planned, Planner, PlanningArm};
-use seamline_cell::run::joint_prefilter;
-use seamline_cell::sim::SimulatedDrive;
+use seamline_cell::run::{arc_rules, joint_prefilter};
+use seamline_cell::sim::{SimulatedArc, SimulatedDrive};
 
 pub(crate) type Ar2010 = Arm<6, SixAxisArm>;
 
@@ -49,6 +50,7 @@ pub(crate) fn independent_torch() -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::new(-0.04383, 0.0, 0.45848), tilt)
 }
 
+#[derive(Clone)]
 pub(crate) struct Queue<const N: usize>(pub(crate) VecDeque<Command<N>>);
 
 impl<const N: usize> CommandSource<N> for Queue<N> {
@@ -144,10 +146,12 @@ pub(crate) fn config<const N: usize, K: PlanningArm<N>>(cell: &Cell, arm: &Arm<N
     }
 }
 
-/// A controller with its simulated drives.
+/// A controller with its simulated drives, and with a power source where it welds.
+#[derive(Clone)]
 pub(crate) struct Bench<const N: usize = 6, K = SixAxisArm> {
-    pub(crate) cycle: Cycle<N, K, Box<[PrefilterEntry<N>]>>,
+    pub(crate) cycle: Box<Cycle<N, K, Box<[PrefilterEntry<N>]>>>,
     pub(crate) drive: SimulatedDrive<N>,
+    pub(crate) arc: Option<SimulatedArc>,
     pub(crate) queue: Queue<N>,
     pub(crate) input: CycleInput<N>,
     pub(crate) period: f64,
@@ -163,6 +167,17 @@ impl<const N: usize, K: PlanningArm<N>> Bench<N, K> {
         Self::with_drive(&cell, arm, SimulatedDrive::from_cell(&cell).unwrap(), commands)
     }
 
+    /// With the power source of the cell, handled as the cell says.
+    pub(crate) fn welding(cell: &Cell, arm: &Arm<N, K>, commands: Vec<Command<N>>) -> Self {
+        let config = CycleConfig { arc: arc_rules(cell), ..config(cell, arm) };
+        let bench = Self::new(cell, arm, commands);
+        let cycle =
+            Cycle::with_prefilter(config, arm.kinematics.clone(), joint_prefilter(cell).unwrap(), arm.home);
+        let mut bench = Self { cycle: Box::new(cycle), arc: Some(SimulatedArc::from_cell(cell)), ..bench };
+        bench.cycle_with(Event::Enable);
+        bench
+    }
+
     pub(crate) fn with_drive(
         cell: &Cell,
         arm: &Arm<N, K>,
@@ -171,8 +186,14 @@ impl<const N: usize, K: PlanningArm<N>> Bench<N, K> {
     ) -> Self {
         let prefilter = joint_prefilter(cell).unwrap();
         let mut bench = Self {
-            cycle: Cycle::with_prefilter(config(cell, arm), arm.kinematics.clone(), prefilter, arm.home),
+            cycle: Box::new(Cycle::with_prefilter(
+                config(cell, arm),
+                arm.kinematics.clone(),
+                prefilter,
+                arm.home,
+            )),
             drive,
+            arc: None,
             queue: Queue(commands.into()),
             input: CycleInput {
                 measured: Ok(arm.home),
@@ -219,6 +240,8 @@ impl<const N: usize, K: PlanningArm<N>> Bench<N, K> {
         self.input.event = None;
         self.input.fault = None;
         self.input.measured = Drive::exchange(&mut self.drive, &output.command, self.period);
+        self.input.arc_burning =
+            self.arc.as_mut().and_then(|source| source.exchange(&output.arc, self.period));
         output
     }
 }

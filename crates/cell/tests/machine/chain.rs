@@ -15,11 +15,11 @@ use crate::bench::{
 };
 
 /// Joints in which the tool is at home in front of the robot.
-const HOME: [f64; 6] = [0.0, 0.2, -0.2, 0.1, -1.2, 0.3];
+pub(crate) const HOME: [f64; 6] = [0.0, 0.2, -0.2, 0.1, -1.2, 0.3];
 
 pub(crate) struct Way {
     cell: Cell,
-    arm: Ar2010,
+    pub(crate) arm: Ar2010,
     /// The taught poses, the start first.
     pub(crate) poses: Vec<Isometry3<f64>>,
     joints: Vec<[f64; 6]>,

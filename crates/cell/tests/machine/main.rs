@@ -17,3 +17,4 @@ mod no_alloc;
 mod pause;
 mod prefilter;
 mod recorded;
+mod weld;

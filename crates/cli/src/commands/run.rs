@@ -30,6 +30,9 @@ pub(crate) struct Arguments {
     /// Speed override in percent: changes time, never the path.
     #[arg(long = "override", value_name = "PCT", default_value_t = 100.0, value_parser = percent)]
     speed_override: f64,
+    /// The arc stays out: the job moves as if it burned.
+    #[arg(long)]
+    dry_run: bool,
 }
 
 /// Above 0 to 100.
@@ -41,7 +44,8 @@ fn percent(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let inputs = load(&arguments.job, &arguments.cell)?;
+    let mut inputs = load(&arguments.job, &arguments.cell)?;
+    inputs.cell.arc.dry_run |= arguments.dry_run;
     let out = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.job));
     let options = RunOptions {
         out: out.clone(),

@@ -45,7 +45,7 @@ pub struct CycleInput<const N: usize> {
     pub measured: Result<[f64; N], DriveFault>,
     /// Speed override, 0 … 1.
     pub speed_override: f64,
-    /// What the operator wants.
+    /// What the operator wants; what only the cycle itself may cause is refused.
     pub event: Option<Event>,
     /// A fault found outside: emergency stop, sensor, arc.
     pub fault: Option<Fault>,
@@ -159,7 +159,7 @@ where
         clock: &mut impl StageClock,
     ) -> CycleOutput<N> {
         let t0 = clock.now_ns();
-        let refused = input.event.filter(|event| !self.apply(*event));
+        let refused = input.event.filter(|event| !(event.is_operators() && self.apply(*event)));
         self.feedback(input);
         let t1 = clock.now_ns();
         let advanced = self.target(input.speed_override, source);
@@ -178,7 +178,7 @@ where
     /// Takes an event; false where it means nothing now.
     pub(super) fn apply(&mut self, event: Event) -> bool {
         let refused = match event {
-            Event::Reset => !self.is_at_rest(),
+            Event::Reset | Event::Disable => !self.is_at_rest(),
             // A stop off the path is carried out first; backing needs the path.
             Event::Resume | Event::BackUp if !self.on_path => event == Event::BackUp || !self.is_at_rest(),
             _ => false,
@@ -288,8 +288,10 @@ where
 
     /// Tier 2: programme time.
     fn target(&mut self, speed_override: f64, source: &mut impl CommandSource<N>) -> Result<(), Fault> {
-        if self.mode == Mode::Resuming {
-            self.resume()?;
+        match self.mode {
+            Mode::Resuming => self.resume()?,
+            Mode::Backing => self.settle_to_back(),
+            _ => {}
         }
         if self.off_path.is_some() || !self.on_path {
             return Ok(());
@@ -297,7 +299,7 @@ where
         let speed = self.speed(speed_override);
         match self.mode {
             Mode::Running => self.advance(speed, source),
-            Mode::Backing => self.back_up(speed),
+            Mode::Backing if self.resume == Resume::Back => self.back_up(speed),
             Mode::Resuming if self.resume == Resume::Back => self.back_along_the_bead(speed),
             _ if self.program.runs_backward() => self.retreat(0.0),
             _ => self.advance(0.0, source),

@@ -125,6 +125,12 @@ impl Event {
         Self::Ready,
         Self::JobDone,
     ];
+
+    /// The operator causes it; the others the cycle itself.
+    #[must_use]
+    pub fn is_operators(self) -> bool {
+        !matches!(self, Self::Fault | Self::AtRest | Self::Ready | Self::JobDone)
+    }
 }
 
 #[cfg(test)]

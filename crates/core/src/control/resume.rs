@@ -1,6 +1,5 @@
 //! What lies between the word to go on and the motion of the job: back to the path, back along the bead, the arc lit again.
 
-use super::arc::ArcRules;
 use super::cycle::Cycle;
 use super::mode::Event;
 use super::off_path::OffPath;
@@ -10,6 +9,11 @@ use crate::safety::Fault;
 
 /// Programme time before the beginning of what is remembered at which backing stops, in seconds: longer than a stop takes.
 const REMEMBERED: f64 = 0.3;
+
+/// Time constant of the last bit of the way back, in seconds.
+const APPROACH: f64 = 0.05;
+/// A place of the bead is met to so many metres.
+const NEAR: f64 = 10e-6;
 
 /// Where a resumption stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,13 +53,21 @@ where
         if !arc && !self.program.runs_backward() {
             self.apply(Event::Ready);
         } else if self.is_at_rest() {
-            let back = arc && self.left_along_the_bead() > 0.0;
+            let back = arc && self.left_along_the_bead() > NEAR;
             self.turn(back);
             self.resume = match (arc, back) {
                 (true, true) => Resume::Back,
                 (true, false) => Resume::Strike,
                 (false, _) => Resume::Settle,
             };
+        }
+    }
+
+    /// Before backing up, the arm comes to rest.
+    pub(super) fn settle_to_back(&mut self) {
+        if self.resume == Resume::Settle && self.is_at_rest() {
+            self.turn(true);
+            self.resume = Resume::Back;
         }
     }
 
@@ -73,27 +85,22 @@ where
         Ok(())
     }
 
-    /// Back along the path for the operator, as far as it is remembered.
+    /// Back along the path for the operator, as far as it is remembered, and not beyond where the arc was lit.
     pub(super) fn back_up(&mut self, speed: f64) -> Result<(), Fault> {
-        if self.resume == Resume::Back {
-            if self.back(f64::INFINITY, speed)? {
-                self.apply(Event::AtRest);
-            }
-            return Ok(());
+        let bead = self.program.place().mark.arc.then(|| self.program.bead());
+        if self.back(bead.unwrap_or(f64::INFINITY), speed)? {
+            self.apply(Event::AtRest);
         }
-        if self.is_at_rest() {
-            self.turn(true);
-            self.resume = Resume::Back;
-        }
-        self.retreat(0.0)
+        Ok(())
     }
 
     /// One cycle back along the path; true when the arm rests, so many metres further back or where the path is no longer known.
     fn back(&mut self, left: f64, speed: f64) -> Result<bool, Fault> {
-        let ArcRules { back_speed, .. } = self.config.arc;
         let (stopping, planned) = self.program.stopping();
-        let enough = left <= stopping || self.program.remembered() < REMEMBERED;
-        let fast = if planned > 0.0 { back_speed / planned } else { 1.0 };
+        let enough = left <= stopping.max(NEAR) || self.program.remembered() < REMEMBERED;
+        // Slower and slower, so that the end is met.
+        let fastest = self.config.arc.back_speed.min(left / APPROACH);
+        let fast = if planned > 0.0 { fastest / planned } else { 1.0 };
         self.retreat(if enough { 0.0 } else { speed.min(fast) })?;
         Ok(enough && self.is_at_rest())
     }

@@ -7,12 +7,13 @@ use crate::kinematics::Kinematics;
 use crate::safety::Fault;
 
 impl<const N: usize> Program<N> {
-    /// Way that it takes to stop from the present speed, within the limits along the path; and that speed. Metres, metres per second.
+    /// Way that it takes to stop from the present speed, within the limits along the path; and the speed as planned. Metres, metres per
+    /// second.
     pub(super) fn stopping(&self) -> (f64, f64) {
         let Some((start, block)) = self.under_way(self.now) else { return (0.0, 0.0) };
         let AlongPath { velocity, acceleration_limit, jerk_limit, .. } = along_path(block, self.now - start);
         let speed = velocity * self.rate.value();
-        (0.5 * speed * (speed / acceleration_limit + acceleration_limit / jerk_limit), speed)
+        (0.5 * speed * (speed / acceleration_limit + acceleration_limit / jerk_limit), velocity)
     }
 
     /// From rest on, programme time runs backward over the moves done, or forward again.
