@@ -6,7 +6,7 @@ use seamline::path::corner::{Blend, Corner, CornerZone, MustStop};
 
 use super::route::Route;
 use super::run::Stops;
-use super::smear::Smear;
+use super::smear::{Bend, Smear};
 use super::smeared_corner::Passing;
 use super::speed::{gentle, on_bends, shared};
 use super::timing::{PathLimits, least};
@@ -18,9 +18,9 @@ const REACH: [f64; 2] = [5.0, 20.0];
 /// Share of a move that its zones at either end may take.
 pub(super) const SHARE: f64 = 0.45;
 
-/// Shares of the permitted error that a blend may have where prefilters add to it, the preferred one last: what is left serves the
+/// Shares of the permitted error that a blend may have where prefilters add to it, the preferred one first: what is left serves the
 /// corners next to it too.
-pub(super) const BLEND_SHARES: [f64; 3] = [0.25, 0.375, 0.5];
+pub(super) const BLEND_SHARES: [f64; 3] = [0.5, 0.375, 0.25];
 
 pub(super) const NOTHING_PERMITTED: &str = "the cell permits no corner error here";
 
@@ -51,18 +51,21 @@ pub(super) fn passing(
     }
 }
 
-/// How fast a blend may be passed by itself, up to `fastest`, with what prefilters add to its error.
-pub(super) fn corner_speed(
+/// The time that a blend by itself costs, with what prefilters add to its error; `speeds` are the greatest of the moves next to it and of
+/// the blend, `hardest` their acceleration and jerk.
+pub(super) fn lost_time(
     blend: &Blend,
     corner: Vector3,
     permitted: f64,
-    fastest: f64,
+    (fastest, speed, hardest): (f64, f64, [f64; 2]),
     smear: &Smear,
+    arc: bool,
 ) -> f64 {
     let mut route = Route::default();
     [blend.before, blend.path, blend.after].into_iter().for_each(|path| route.push(path));
     let ends = [route.start_of(1), route.start_of(2)];
-    Passing { route: &route, blend: ends, corner, permitted }.speed(smear, fastest)
+    let passing = Passing { route: &route, blend: ends, corner, permitted, limits: hardest, fastest };
+    passing.lost(&passing.pass(smear, &[Bend::default(); 2], arc), speed)
 }
 
 /// The gentler limits of both neighbours, as slow as the corner asks for: `permitted` is what the cell permits to either.

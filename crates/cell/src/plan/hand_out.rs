@@ -14,7 +14,7 @@ use super::route::Route;
 use super::run::{Link, Piece, Sight, Stops};
 use super::smear;
 use super::suggest::Trouble;
-use super::timing::{Course, JointPath as _, Timing, TimingError, TimingLimits, time_path};
+use super::timing::{Course, JointPath as _, TimingError, TimingLimits, time_path};
 use crate::job::{Action, Location, Step};
 use crate::record::SegmentKind;
 
@@ -95,7 +95,8 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             };
         };
         let end = if sight.open { last.position } else { route.length() };
-        let mut remarks = self.remarks(&route, &timing, end)?;
+        let mut remarks = Remarks::new(self, &route, &timing, &caps, end)
+            .map_err(|(index, problem)| self.give_up(index, problem))?;
         self.remark_caps(&mut remarks, &caps, end)?;
         let at = self.run.piece(0).map(|piece| piece.link.step.at.clone());
         self.hand_out_up_to(end, !sight.open, settled, &mut joints, &remarks, out);
@@ -202,11 +203,6 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             "ends with joint {name} at {end:.1} {unit}, taught at {taught:.1} {unit}: the straight way leads to another \
              configuration"
         ))
-    }
-
-    /// Remarks on the motion up to `end`; with the arc on, a slowdown may be refused.
-    fn remarks(&mut self, route: &Route, timing: &Timing, end: f64) -> Result<Remarks, PlanError> {
-        Remarks::new(self, route, timing, end).map_err(|(index, problem)| self.give_up(index, problem))
     }
 
     fn timing_fault(&mut self, route: &Route, error: &TimingError<InverseError>) -> PlanError {

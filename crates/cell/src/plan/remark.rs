@@ -7,6 +7,7 @@ use super::error::{Place, Problem};
 use super::planner::Planner;
 use super::route::Route;
 use super::run::Piece;
+use super::smear::{Cap, least};
 use super::suggest::Trouble;
 use super::timing::{Order, Slowdown, Timing, TimingKind};
 use crate::record::SegmentKind;
@@ -24,7 +25,7 @@ pub(super) struct Remarks {
 }
 
 impl Remarks {
-    /// The remarks on the motion before `end`.
+    /// The remarks on the motion before `end`; `caps` are the speeds that prefilters permit.
     ///
     /// # Errors
     /// The number of a piece and what is refused about it.
@@ -32,6 +33,7 @@ impl Remarks {
         planner: &Planner<'_, N, K>,
         route: &Route,
         timing: &Timing,
+        caps: &[Cap],
         end: f64,
     ) -> Result<Self, (usize, Problem)> {
         let mut remarks = Self::default();
@@ -39,7 +41,9 @@ impl Remarks {
             let (index, _) = route.locate(slowdown.place);
             let Some(piece) = planner.run.piece(index) else { continue };
             let on_link = shifted(slowdown, piece.offset - route.start_of(index), &piece.link.path);
-            let text = planner.slowdown_text(piece, &on_link).map_err(|problem| (index, problem))?;
+            let permitted = piece.limits.speed.min(least(caps, slowdown.place, slowdown.place));
+            let text =
+                planner.slowdown_text(piece, &on_link, permitted).map_err(|problem| (index, problem))?;
             remarks.add(index, text);
         }
         if timing.kind() == TimingKind::Stretched {
@@ -101,9 +105,9 @@ fn shifted(slowdown: &Slowdown, by: f64, path: &Path) -> Slowdown {
 }
 
 impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
-    /// A slowdown in words, with what would keep the speed. With the arc on it may be refused.
-    fn slowdown_text(&self, piece: &Piece<N>, slowdown: &Slowdown) -> Result<String, Problem> {
-        let (path, speed) = (&piece.link.path, piece.limits.speed);
+    /// A slowdown from a speed in words, with what would keep that. With the arc on it may be refused.
+    fn slowdown_text(&self, piece: &Piece<N>, slowdown: &Slowdown, speed: f64) -> Result<String, Problem> {
+        let path = &piece.link.path;
         let (unit, speed_unit, factor) = units(path);
         let order = match slowdown.order {
             Order::Velocity => "speed",

@@ -7,10 +7,11 @@ use seamline::geometry::Pose;
 use seamline::path::corner::Blend;
 use seamline::path::{Measure, Path, TimingPiece};
 
-use super::corner::{BLEND_SHARES, SHARE, corner_speed, limits, passing};
+use super::corner::{BLEND_SHARES, SHARE, limits, lost_time, passing};
 use super::resolve::Goal;
 use super::route::Route;
 use super::smear::{Cap, Smear};
+use super::smeared_corner::Pass;
 use super::timing::{PathLimits, Stretch};
 use crate::job::{Location, Step};
 use crate::record::{SegmentInfo, SegmentKind};
@@ -57,8 +58,8 @@ pub(super) struct Piece<const N: usize> {
     slowed: bool,
     /// How far prefilters take the tool off it, as far as it has been looked at, in metres.
     pub(super) off: f64,
-    /// Of a corner: the speed that prefilters permit, where it is known.
-    pub(super) cap: Option<f64>,
+    /// Of a corner: how prefilters permit to pass it, where that is known.
+    pub(super) cap: Option<Pass>,
     /// Steps that take no time, done when the piece is.
     pub(super) after: Vec<Step>,
 }
@@ -160,13 +161,14 @@ impl<const N: usize> Run<N> {
         };
         if let Some(smear) = self.smear {
             let point = link.path.pose(0.0).translation.vector;
-            // Best is what does not slow down the moves on either side, and next what is passed fastest.
-            let worth = |blend: &Blend| {
-                let cap = corner_speed(blend, point, permitted, speed, &smear);
-                if cap < speed { cap.min(limits(blend, of_both).speed) } else { cap }
+            let hardest = [last.limits, link.limits].map(|limits| [limits.acceleration, limits.jerk]);
+            let hardest = [0, 1].map(|k| f64::max(hardest[0][k], hardest[1][k]));
+            let lost = |blend: &Blend| {
+                let limits = limits(blend, of_both);
+                lost_time(blend, point, permitted, (speed, limits.speed, hardest), &smear, last.info.arc)
             };
             let blends = BLEND_SHARES.iter().filter_map(|share| blend(share * permitted).ok()?);
-            corner = blends.max_by(|a, b| worth(a).total_cmp(&worth(b))).unwrap_or(corner);
+            corner = blends.min_by(|a, b| lost(a).total_cmp(&lost(b))).unwrap_or(corner);
         }
         last.path = corner.before;
         last.info.rounded[1] = rounded(corner.trims[0], last.limits.speed, self.smear);
@@ -219,6 +221,13 @@ impl<const N: usize> Run<N> {
         self.pieces.iter().map(|piece| piece.limits.speed).fold(0.0, f64::max)
     }
 
+    /// The greatest acceleration and jerk along it.
+    pub(super) fn hardest(&self) -> [f64; 2] {
+        let of =
+            |[a, j]: [f64; 2], piece: &Piece<N>| [a.max(piece.limits.acceleration), j.max(piece.limits.jerk)];
+        self.pieces.iter().fold([0.0; 2], of)
+    }
+
     /// A place ahead, or the end of the corner that it lies in: a corner is looked at whole.
     pub(super) fn past_corner(&self, place: f64) -> f64 {
         let corner = self
@@ -234,11 +243,12 @@ impl<const N: usize> Run<N> {
         }
     }
 
-    /// The speed that prefilters permit at a corner.
-    pub(super) fn cap_corner(&mut self, index: usize, speed: f64) {
-        if let Some(piece) = self.pieces.get_mut(index) {
-            piece.cap = Some(speed);
-        }
+    /// How prefilters permit to pass a corner; gives the cap.
+    pub(super) fn pass_corner(&mut self, index: usize, pass: Pass) -> Option<Cap> {
+        let from = self.placed().nth(index).map(|(from, _)| from)?;
+        let piece = self.pieces.get_mut(index)?;
+        piece.cap = Some(pass);
+        Some(pass.cap([from, from + piece.path.length()]))
     }
 
     /// Keeps the caps on account of places before `end`, which is the new start.

@@ -34,9 +34,14 @@ const PLACES: [f64; 2] = [24.0, 2_000.0];
 /// Speeds are rounded down to powers of this, so that they do not change from place to place.
 const STEP: f64 = 1.02;
 /// What a corner leaves of its permitted error for the joints' own curvature.
-const FOR_JOINTS: f64 = 0.05;
+pub(super) const FOR_JOINTS: f64 = 0.05;
 /// A weld that is this far off its path is worth a word, in metres.
 const WORTH_A_WORD: f64 = 1e-5;
+/// Cells that the kernels' length is divided into, and how many more there may be: as many as there may be kernels, and one.
+const CELLS: usize = 64;
+const MORE_CELLS: usize = 4;
+/// Places on either side of a corner at which the joints' own curvature is looked at.
+const AROUND: u32 = 4;
 /// A slowdown within this share of the speed is rounding.
 const SAME_SPEED: f64 = 1e-3;
 
@@ -50,6 +55,9 @@ pub(super) struct Smear {
     pub(super) delay: f64,
     /// How far the tool may be off a move's path, in metres.
     pub(super) path_error: f64,
+    /// How much of a command comes out after a time that begins in each cell, and lasts for as many cells as there are kernels.
+    shares: [f64; CELLS + MORE_CELLS],
+    kernels: usize,
 }
 
 /// A stretch of the run with a greatest speed, on account of a place in it.
@@ -63,9 +71,9 @@ pub(super) struct Cap {
 
 /// The greatest curvature of a path as far as it comes from curved joints: of the tool's place and of its turning, per path².
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Bend {
-    place: f64,
-    turn: f64,
+pub(super) struct Bend {
+    pub(super) place: f64,
+    pub(super) turn: f64,
 }
 
 impl Smear {
@@ -78,7 +86,28 @@ impl Smear {
             length: sum(Kernel::length),
             delay: sum(Kernel::delay),
             path_error: vibration.path_error(),
+            shares: shares(kernels, sum(Kernel::length) / CELLS as f64),
+            kernels: kernels.len(),
         })
+    }
+
+    /// How long a cell is, in seconds.
+    pub(super) fn cell(&self) -> f64 {
+        self.length / CELLS as f64
+    }
+
+    /// A bound of what comes out across the middle of a corner, where a bound of what goes in is `off` of the number of cells until or
+    /// since the middle, and rises with it: at some instant, as much has come in on one side of the middle as on the other.
+    pub(super) fn mean_off(&self, off: impl Fn(usize) -> f64) -> f64 {
+        let off: Vec<f64> = (0..CELLS + 2 * MORE_CELLS).map(off).collect();
+        let shares = || self.shares.iter().enumerate();
+        let at = |middle: usize| {
+            let after = shares().take(middle).map(|(cell, share)| share * off[middle - cell]);
+            let before = shares().skip((middle + 1).saturating_sub(self.kernels));
+            let before = before.map(|(cell, share)| share * off[cell + self.kernels - middle]);
+            2.0 * after.sum::<f64>().max(before.sum())
+        };
+        (0..=CELLS).map(at).fold(f64::INFINITY, f64::min)
     }
 
     /// How far the tool is off at a speed.
@@ -87,16 +116,40 @@ impl Smear {
     }
 
     /// The speed at which the tool is off by `error` metres, or turned by [`Vibration::TURN_ERROR`].
-    fn speed(&self, bend: &Bend, error: f64) -> f64 {
+    pub(super) fn speed(&self, bend: &Bend, error: f64) -> f64 {
         let square = (error / bend.place).min(Vibration::TURN_ERROR / bend.turn) * 2.0 / self.variance;
         if square.is_nan() { f64::INFINITY } else { square.sqrt() }
     }
 
-    /// A cap on account of what lies between two places.
-    fn cap(&self, [place, end]: [f64; 2], speed: f64) -> Cap {
+    /// A cap on account of a place.
+    fn cap(&self, place: f64, speed: f64) -> Cap {
         let reach = speed * self.length;
-        Cap { place, from: place - reach, to: end + reach, speed }
+        Cap { place, from: place - reach, to: place + reach, speed }
     }
+}
+
+/// How much of a command comes out of kernels one behind the other, by cells of a time.
+fn shares(kernels: &[Kernel], cell: f64) -> [f64; CELLS + MORE_CELLS] {
+    let mut shares = [0.0; CELLS + MORE_CELLS];
+    shares[0] = 1.0;
+    for kernel in kernels {
+        let before = shares;
+        let of = (0..shares.len()).map(|at| share(kernel, at, cell)).collect::<Vec<_>>();
+        for (at, sum) in shares.iter_mut().enumerate() {
+            *sum = (0..=at).map(|k| before[k] * of[at - k]).sum();
+        }
+    }
+    shares
+}
+
+/// What comes out of a kernel within one cell of a time.
+fn share(kernel: &Kernel, at: usize, cell: f64) -> f64 {
+    let [from, to] = [at, at + 1].map(|k| k as f64 * cell);
+    let of = |start: f64| match kernel.rectangles().first() {
+        Some(length) => (to.min(start + length) - from.max(start)).max(0.0) / length,
+        None => f64::from(u8::from((start / cell) as usize == at)),
+    };
+    kernel.impulses().iter().map(|impulse| impulse.weight * of(impulse.time)).sum()
 }
 
 impl Bend {
@@ -168,7 +221,7 @@ pub(super) fn slowed(stretches: &[Stretch], caps: &[Cap], start: f64) -> Vec<Str
 }
 
 /// The least cap between two coordinates.
-fn least(caps: &[Cap], from: f64, to: f64) -> f64 {
+pub(super) fn least(caps: &[Cap], from: f64, to: f64) -> f64 {
     let here = caps.iter().filter(|cap| cap.from < to && cap.to > from);
     here.fold(f64::INFINITY, |least, cap| least.min(cap.speed))
 }
@@ -193,7 +246,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     /// before `to`.
     pub(super) fn caps(&mut self, ahead: &Route, joints: &mut PathJoints<'_, N, K>, to: f64) -> Vec<Cap> {
         let Some(smear) = self.run.smear else { return Vec::new() };
-        let (fastest, reach) = (self.run.fastest(), self.run.reach());
+        let (fastest, reach, hardest) = (self.run.fastest(), self.run.reach(), self.run.hardest());
         let mut caps = std::mem::take(&mut self.run.caps);
         let (mut bends, mut corners) = (Vec::new(), Vec::new());
         for (index, (from, piece)) in self.run.placed().enumerate() {
@@ -209,28 +262,32 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
                 let blend = [from, from + length];
                 // What lies on either side of it must be in sight; then its cap stays.
                 if piece.cap.is_none() && from < to + reach {
-                    let passing = Passing { route: ahead, blend, corner, permitted };
-                    let joints = places(&piece.path, 0.0, length)
-                        .filter_map(|s| bend(from + s, &of_path(ahead, from + s)))
-                        .fold(Bend::default(), Bend::greater);
-                    let speed = passing.speed(&smear, fastest);
-                    corners.push((index, blend, speed.min(smear.speed(&joints, FOR_JOINTS * permitted))));
+                    let passing =
+                        Passing { route: ahead, blend, corner, permitted, limits: hardest, fastest };
+                    let mut greatest = |places: &mut dyn Iterator<Item = f64>| {
+                        let bends = places.filter_map(|s| bend(s, &of_path(ahead, s)));
+                        bends.fold(Bend::default(), Bend::greater)
+                    };
+                    let inside = greatest(&mut places(&piece.path, 0.0, length).map(|s| from + s));
+                    let around = (0..=2 * AROUND).map(|k| f64::from(k) / f64::from(AROUND) - 1.0);
+                    let mut around = around.map(|share| (from + share * reach).clamp(0.0, ahead.length()));
+                    let bends = [inside, inside.greater(greatest(&mut around))];
+                    corners.push((index, passing.pass(&smear, &bends, piece.info.arc)));
                 }
-                caps.extend(piece.cap.map(|speed| smear.cap(blend, speed)));
+                caps.extend(piece.cap.map(|pass| pass.cap(blend)));
                 continue;
             }
             for s in places(&piece.link.path, piece.offset, piece.offset + length) {
                 let place = from + s - piece.offset;
                 let Some(bend) = bend(place, &[Vector3::zeros(); 2]) else { continue };
-                caps.push(smear.cap([place, place], stepped(smear.speed(&bend, smear.path_error))));
+                caps.push(smear.cap(place, stepped(smear.speed(&bend, smear.path_error))));
                 if place < to {
                     bends.push((index, place, bend, piece.limits.speed));
                 }
             }
         }
-        for (index, blend, speed) in corners {
-            self.run.cap_corner(index, speed);
-            caps.push(smear.cap(blend, speed));
+        for (index, pass) in corners {
+            caps.extend(self.run.pass_corner(index, pass));
         }
         caps.retain(|cap| cap.speed < fastest);
         for (index, place, bend, speed) in bends {
@@ -273,5 +330,57 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             if piece.info.arc { " with the arc on" } else { "" },
         );
         if self.refuses_slowdown(piece, speed) { Err(Problem::WeldSlowdown(text)) } else { Ok(text) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use seamline::vibration::{Mode, Prefilter};
+
+    use super::*;
+    use crate::cell::FlexibleMode;
+
+    fn smear(prefilter: Prefilter, frequencies: &[f64]) -> Smear {
+        let mode = |frequency_hz: &f64| FlexibleMode { frequency_hz: *frequency_hz, damping: 0.02 };
+        let modes = frequencies.iter().map(mode).collect();
+        Smear::of(&Vibration::try_new(prefilter, 5e-4, modes).unwrap()).unwrap()
+    }
+
+    /// Every command comes out; at constant speed the mean distance from the middle is that of the definition, and never less.
+    #[test]
+    fn means_are_those_of_the_kernels() {
+        for prefilter in Prefilter::ALL.into_iter().skip(1) {
+            for frequencies in [&[6.34][..], &[9.0, 23.0]] {
+                let smear = smear(prefilter, frequencies);
+                assert!((smear.shares.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{prefilter}");
+                let mean = smear.mean_off(|cells| smear.cell() * cells as f64);
+                let exact = mean_distance(prefilter, frequencies);
+                let margin = 2.0 * smear.kernels as f64 * smear.cell();
+                assert!((exact..exact + margin).contains(&mean), "{prefilter}: {mean} {exact}");
+            }
+        }
+    }
+
+    /// Of the delay from its mean, by quadrature over a fine comb of delays.
+    fn mean_distance(prefilter: Prefilter, frequencies: &[f64]) -> f64 {
+        const TEETH: u32 = 200;
+        let mut delays = vec![(0.0, 1.0)];
+        for frequency in frequencies {
+            let kernel = prefilter.kernel(&Mode::try_new(TAU * frequency, 0.02).unwrap()).unwrap();
+            let mut comb: Vec<(f64, f64)> =
+                kernel.impulses().iter().map(|impulse| (impulse.time, impulse.weight)).collect();
+            for length in kernel.rectangles() {
+                let tooth = |k: u32| length * (f64::from(k) + 0.5) / f64::from(TEETH);
+                let spread =
+                    |(t, w): (f64, f64)| (0..TEETH).map(move |k| (t + tooth(k), w / f64::from(TEETH)));
+                comb = comb.into_iter().flat_map(spread).collect();
+            }
+            let all = |(t, w): (f64, f64)| comb.iter().map(move |(u, x)| (t + u, w * x)).collect::<Vec<_>>();
+            delays = delays.into_iter().flat_map(all).collect();
+        }
+        let mean: f64 = delays.iter().map(|(t, w)| t * w).sum();
+        delays.iter().map(|(t, w)| (t - mean).abs() * w).sum::<f64>() * (1.0 - 1e-4)
     }
 }
