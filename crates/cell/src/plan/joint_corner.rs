@@ -62,6 +62,8 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     /// A corner between two joint moves. It leaves out as much as the permitted error allows, which is that of the tool's distance from the
     /// point between them, and of its distance from the way that it would take with a stop.
     ///
+    /// Cost: mostly 10 to 30 corners looked at, and 149 at most, each with one or two calls of the generator and 115 of forward kinematics.
+    ///
     /// # Errors
     /// Why the robot must stop between.
     pub(super) fn joint_corner(
