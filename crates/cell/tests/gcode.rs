@@ -24,7 +24,7 @@ fn setup() -> Setup {
         configuration: Configuration::default(),
         rapid_mm_s: 1000.0,
         joint_percent: 10.0,
-        tolerance_mm: 0.5,
+        tolerance_mm: 0.01,
     }
 }
 
@@ -84,11 +84,11 @@ fn coordinates_are_absolute_or_incremental_in_either_unit() {
 
 #[test]
 fn speeds_are_the_cell_s_and_the_feed_in_the_unit_of_its_line() {
-    let text = "G0 X400 Y0 Z0\nG0 X410\nG1 X420 F600\nX430 F1200\nG20 F6 X17\nG0 X18\nM2";
+    let text = "G0 X400 Y0 Z0\nG0 X410\nG1 X420 F600\nX430 F1200\nG20 F15 X17\nG0 X18\nM2";
     let speeds: Vec<Speed> = moves(text).iter().map(|r#move| r#move.speed).collect();
     let linear = |mm_s| Speed::Linear { mm_s };
     let wanted =
-        [Speed::JointPercent(10.0), linear(1000.0), linear(10.0), linear(20.0), linear(2.54), linear(1000.0)];
+        [Speed::JointPercent(10.0), linear(1000.0), linear(10.0), linear(20.0), linear(6.35), linear(1000.0)];
     assert_eq!(speeds, wanted);
 }
 
@@ -142,12 +142,12 @@ fn corners_are_as_the_program_asks_for() {
         moves(&text).iter().skip(1).map(|r#move| r#move.zone).collect()
     };
     let within = |mm| Zone::Tolerance { mm };
-    assert_eq!(zones(""), [within(0.5)]);
+    assert_eq!(zones(""), [within(0.01)]);
     assert_eq!(zones("G64 P0.02"), [within(0.02)]);
-    assert_eq!(zones("G20 G64 P0.01 G21"), zones("G64 P0.01"));
+    assert_eq!(zones("G20\nG64 P0.01\nG21"), [within(0.254)]);
     assert_eq!(zones("G61"), [within(0.0)]);
     assert_eq!(zones("G61.1"), [Zone::Exact]);
-    assert_eq!(zones("G64 P0.02\nG64"), [within(0.5)]);
+    assert_eq!(zones("G64 P0.02\nG64"), [within(0.01)]);
 }
 
 #[test]
