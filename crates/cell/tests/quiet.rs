@@ -53,6 +53,7 @@ fn options(plant_drift: f64) -> AutoOptions {
         corner_errors: CORNER_ERRORS.into(),
         acceleration: None,
         acceleration_rms: None,
+        jerk: None,
         safe_drift: 0.15,
     }
 }
@@ -134,6 +135,26 @@ fn no_louder_in_the_mean_either() {
     assert!(auto.path_time <= 0.96 * fir_zvd.path_time, "{} {}", auto.path_time, fir_zvd.path_time);
 }
 
+/// With a bound of the command's jerk, its acceleration changes slowly over any 5 ms, and little time is lost.
+#[test]
+fn smooth_where_the_jerk_is_bounded() {
+    const JERK: f64 = 300.0;
+    let smooth = AutoOptions { corner_errors: vec![500e-6], jerk: Some(JERK), ..options(0.0) };
+    let outcome = scara_auto(&smooth).unwrap();
+    let Compared { fir_zvd, auto, .. } = &outcome.compared[0];
+    assert!(auto.path_time <= 0.93 * fir_zvd.path_time, "{} {}", auto.path_time, fir_zvd.path_time);
+    assert!(auto.acceleration_max <= fir_zvd.acceleration_max && auto.residual_max <= fir_zvd.residual_max);
+    // A step is 4.93 ms: what two second differences 4 ms apart see lies at most two steps apart.
+    let acceleration = |n: usize| {
+        let at = |k: usize| auto.trace[k].command;
+        (at(n + 1) - 2.0 * at(n) + at(n - 1)) / 1e-6
+    };
+    for n in 1..auto.trace.len() - 6 {
+        let change = (acceleration(n + 4) - acceleration(n)).norm();
+        assert!(change <= 2.0 * JERK * 5e-3 + 0.05, "{change} at {n}");
+    }
+}
+
 /// Along the test path it starts and ends on it, leaves it by no more than the corner error, and is never faster than asked.
 #[test]
 fn it_keeps_the_path() {
@@ -142,6 +163,7 @@ fn it_keeps_the_path() {
         acceleration: 1.06,
         acceleration_rms: OPEN,
         command: COMMAND,
+        jerk: OPEN,
         corner_error: 500e-6,
         drift: 0.15,
     };
@@ -173,8 +195,14 @@ fn keeps_the_path(path: &[Path], motion: &QuietMotion<'_>, feedrate: f64, error:
 #[test]
 fn without_a_corner_error_it_stops_in_each_corner() {
     let path = test_path().unwrap();
-    let quiet =
-        Quiet { acceleration: 1.2, acceleration_rms: OPEN, command: COMMAND, corner_error: 0.0, drift: 0.0 };
+    let quiet = Quiet {
+        acceleration: 1.2,
+        acceleration_rms: OPEN,
+        command: COMMAND,
+        jerk: OPEN,
+        corner_error: 0.0,
+        drift: 0.0,
+    };
     let motion = QuietMotion::plan(&path, &mode(6.34), FEEDRATE, &quiet).unwrap();
     assert!(motion.corners().iter().all(|corner| corner.error <= 1e-6), "{:?}", motion.corners());
     assert!(followed(&motion, mode(6.34)).acceleration_max <= 1.2);
@@ -188,6 +216,7 @@ fn a_bound_of_the_root_mean_square_is_kept_and_costs_time() {
         acceleration: 1.2,
         acceleration_rms: OPEN,
         command: COMMAND,
+        jerk: OPEN,
         corner_error: 500e-6,
         drift: 0.0,
     };
@@ -204,8 +233,14 @@ fn a_bound_of_the_root_mean_square_is_kept_and_costs_time() {
 fn more_vibration_or_more_error_takes_no_longer() {
     let path = test_path().unwrap();
     let curve = |corner_error: f64| {
-        let quiet =
-            Quiet { acceleration: 1.0, acceleration_rms: OPEN, command: COMMAND, corner_error, drift: 0.0 };
+        let quiet = Quiet {
+            acceleration: 1.0,
+            acceleration_rms: OPEN,
+            command: COMMAND,
+            jerk: OPEN,
+            corner_error,
+            drift: 0.0,
+        };
         trade_off(&path, &mode(6.34), FEEDRATE, &quiet, &[0.8, 1.2, 2.0])
     };
     let (sharp, round) = (curve(100e-6), curve(500e-6));
@@ -240,6 +275,7 @@ fn short_segments_are_taken_slower() {
             acceleration: bound,
             acceleration_rms: OPEN,
             command: COMMAND,
+            jerk: OPEN,
             corner_error: error,
             drift: if case % 2 == 0 { 0.0 } else { 0.15 },
         };
@@ -254,8 +290,14 @@ fn short_segments_are_taken_slower() {
 #[test]
 fn a_bound_below_all_motion_is_an_error() {
     let path = test_path().unwrap();
-    let quiet =
-        Quiet { acceleration: 1e-7, acceleration_rms: OPEN, command: COMMAND, corner_error: 0.0, drift: 0.0 };
+    let quiet = Quiet {
+        acceleration: 1e-7,
+        acceleration_rms: OPEN,
+        command: COMMAND,
+        jerk: OPEN,
+        corner_error: 0.0,
+        drift: 0.0,
+    };
     let found = QuietMotion::plan(&path, &mode(6.34), FEEDRATE, &quiet).err();
     assert_eq!(found, Some(ExperimentError::Bound { bound: 1e-7, rms: OPEN }));
 }

@@ -25,6 +25,8 @@ pub struct AutoOptions {
     pub acceleration: Option<f64>,
     /// Root mean square of the tool's acceleration, in m/s²; open if not given.
     pub acceleration_rms: Option<f64>,
+    /// How fast the command's acceleration may change, in m/s³; open if not given.
+    pub jerk: Option<f64>,
     /// By how much the mode may drift with little left after the last command: see [`Quiet::drift`].
     pub safe_drift: f64,
 }
@@ -37,7 +39,8 @@ pub struct AutoOutcome {
     /// One for each corner error.
     pub compared: Vec<Compared>,
     modelled: Mode,
-    safe_drift: f64,
+    /// What every motion keeps, whatever its bound and corner error.
+    common: Quiet,
 }
 
 /// Runs with the same corner error on the same plant.
@@ -63,6 +66,14 @@ pub fn scara_auto(options: &AutoOptions) -> Result<AutoOutcome, ExperimentError>
     let path = test_path().map_err(|_| ExperimentError::Path)?;
     let Found { identified, modelled, .. } = find_mode(&path)?;
     let plant = setup(plant(1.0 + options.plant_drift)?);
+    let common = Quiet {
+        acceleration: 0.0,
+        acceleration_rms: f64::INFINITY,
+        command: COMMAND,
+        jerk: options.jerk.unwrap_or(f64::INFINITY),
+        corner_error: 0.0,
+        drift: options.safe_drift,
+    };
     let compare = |permitted: &f64| {
         let with = |on: &Setup, prefilter| run(on, &path, prefilter, &modelled, *permitted);
         let bound = match options.acceleration {
@@ -72,9 +83,8 @@ pub fn scara_auto(options: &AutoOptions) -> Result<AutoOutcome, ExperimentError>
         let quiet = Quiet {
             acceleration: bound,
             acceleration_rms: options.acceleration_rms.unwrap_or(f64::INFINITY),
-            command: COMMAND,
             corner_error: *permitted,
-            drift: options.safe_drift,
+            ..common
         };
         let motion = QuietMotion::plan(&path, &modelled, FEEDRATE, &quiet)?;
         let auto = follow(&plant, motion.duration(), &|time| motion.position(time), motion.corners())?;
@@ -87,7 +97,7 @@ pub fn scara_auto(options: &AutoOptions) -> Result<AutoOutcome, ExperimentError>
         })
     };
     let compared = options.corner_errors.iter().map(compare).collect::<Result<_, ExperimentError>>()?;
-    Ok(AutoOutcome { identified, compared, modelled, safe_drift: options.safe_drift })
+    Ok(AutoOutcome { identified, compared, modelled, common })
 }
 
 impl AutoOutcome {
@@ -97,13 +107,7 @@ impl AutoOutcome {
     /// None: the test path is fixed. The type is that of the path.
     pub fn trade_off(&self, permitted: f64, bounds: &[f64]) -> Result<Vec<[f64; 2]>, ExperimentError> {
         let path = test_path().map_err(|_| ExperimentError::Path)?;
-        let quiet = Quiet {
-            acceleration: 0.0,
-            acceleration_rms: f64::INFINITY,
-            command: COMMAND,
-            corner_error: permitted,
-            drift: self.safe_drift,
-        };
+        let quiet = Quiet { corner_error: permitted, ..self.common };
         Ok(trade_off(&path, &self.modelled, FEEDRATE, &quiet, bounds))
     }
 }

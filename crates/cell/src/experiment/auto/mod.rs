@@ -33,6 +33,8 @@ pub struct Quiet {
     pub acceleration_rms: f64,
     /// Greatest acceleration of the command, in m/s²: what the arm's axes can do.
     pub command: f64,
+    /// How fast that acceleration may change, in m/s³, from step to step (1/32 of the mode's period); infinite if it does not matter.
+    pub jerk: f64,
     /// Corner error, in metres.
     pub corner_error: f64,
     /// Fraction by which the mode's frequency may be off, up or down: over all of that range little is left after the last command. Zero
@@ -214,6 +216,7 @@ fn plan_once<'a>(
         let kept = Kept {
             acceleration: quiet.acceleration,
             command: quiet.command,
+            jerk: quiet.jerk,
             corner_error: ERROR_USED * quiet.corner_error,
             residual: RESIDUAL * loud,
             drift: quiet.drift,

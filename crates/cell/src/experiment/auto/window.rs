@@ -29,6 +29,8 @@ pub(super) struct Kept {
     pub(super) acceleration: f64,
     /// The command's greatest acceleration, in m/s².
     pub(super) command: f64,
+    /// Greatest change of that acceleration from step to step, in m/s³; may be infinite.
+    pub(super) jerk: f64,
     /// Corner error, in metres.
     pub(super) corner_error: f64,
     /// Amplitude of the vibration that is left at the end, in m/s².
@@ -165,6 +167,7 @@ impl Window<'_> {
             self.drive(&mut program, laid);
         }
         self.tool(&mut program, &sides);
+        self.changes(&mut program, &sides);
         self.drifted(&mut program, &sides);
         if let [first, second] = sides.as_slice() {
             self.near(&mut program, first, second);
@@ -247,6 +250,29 @@ impl Window<'_> {
             |part: usize, axis: usize| at(steps, part, axis).plus(-1.0, &Affine::constant(end[part][axis]));
         let residual = self.kept.residual / self.kept.acceleration;
         program.within(residual, [left(0, 0), left(0, 1), left(1, 0), left(1, 1)]);
+    }
+
+    /// The command's acceleration changes no faster than it may, from cruise to cruise.
+    fn changes(&self, program: &mut Program, sides: &[Laid<'_>]) {
+        if self.kept.jerk.is_infinite() {
+            return;
+        }
+        let most = self.kept.jerk * self.step / self.kept.acceleration;
+        let cruise = |part: Part, axis: usize| {
+            let [tool, rate] = self.cruise(sides, part);
+            Affine::constant(tool[axis] + 2.0 * self.mode.damping() * rate[axis])
+        };
+        let steps = self.steps();
+        for step in 0..=steps {
+            let change = |axis: usize| {
+                let before = step.checked_sub(1);
+                let from = before.map_or_else(|| cruise(Part::First, axis), |n| self.command(sides, n, axis));
+                let to =
+                    if step < steps { self.command(sides, step, axis) } else { cruise(Part::Second, axis) };
+                to.plus(-1.0, &from)
+            };
+            program.within(most, [change(0), change(1)]);
+        }
     }
 
     /// How quiet a tool of another frequency is at the end.

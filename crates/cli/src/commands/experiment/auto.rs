@@ -27,6 +27,9 @@ pub(super) struct AutoArguments {
     /// With auto: RMS of the tool's acceleration while it moves, in g; open if not given.
     #[arg(long, value_name = "G", value_parser = positive, requires = "prefilter")]
     rms_g: Option<f64>,
+    /// With auto: how fast the command's acceleration may change, in m/s³; open if not given. 300 makes smooth feedrates.
+    #[arg(long, value_name = "J", value_parser = positive, requires = "prefilter")]
+    jerk_m_s3: Option<f64>,
     /// With auto: change of the mode's frequency up to which the residual stays small, in percent.
     #[arg(long, value_name = "P", default_value_t = 15.0, value_parser = safe, requires = "prefilter")]
     safe_drift_pct: f64,
@@ -62,6 +65,7 @@ pub(super) fn run(arguments: &ScaraArguments) -> anyhow::Result<()> {
         corner_errors,
         acceleration: auto.max_g.map(|g| g * G),
         acceleration_rms: auto.rms_g.map(|g| g * G),
+        jerk: auto.jerk_m_s3,
         safe_drift: 0.01 * auto.safe_drift_pct,
     })?;
     let rows = outcome.compared.iter().flat_map(rows).collect();
