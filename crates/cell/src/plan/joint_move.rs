@@ -137,7 +137,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         };
         let info = SegmentInfo { segment: self.next_segment(), kind, ..before.info() };
         out.push(before.hand_out(info, TrajectoryMotion::whole(corner.trajectory), [false; 2]));
-        out.extend(before.after.iter().map(Planned::of));
+        out.extend(before.after.iter().map(|step| self.aside(step)));
         let motion = next.motion.part(joined, next.motion.duration());
         self.joints = motion.at_time(0.0).position;
         self.hold(JointMove { motion, from_rest: false, ..next });
@@ -149,7 +149,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let planned = held.hand_out(held.info(), held.motion, [held.from_rest, true]);
         let duration = planned.duration + self.run_out();
         out.push(Planned { duration, ..planned });
-        out.extend(held.after.iter().map(Planned::of));
+        out.extend(held.after.iter().map(|step| self.aside(step)));
         self.joints = held.target;
     }
 

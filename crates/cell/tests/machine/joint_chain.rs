@@ -5,7 +5,9 @@ use seamline::control::{Command, Event, Mode, Motion};
 use seamline::kinematics::ScaraArm;
 use seamline::vibration::Prefilter;
 use seamline_cell::cell::{Cell, FlexibleMode, Vibration};
-use seamline_cell::job::{Action, MovePath, Speed, Step, Zone, joints_from_pulses, pulses_from_joints};
+use seamline_cell::job::{
+    Action, ArcCondition, MovePath, Speed, Step, Zone, joints_from_pulses, pulses_from_joints,
+};
 use seamline_cell::plan::{Arm, Planned, PlanningArm};
 use seamline_cell::record::SegmentKind;
 
@@ -380,15 +382,20 @@ fn the_robot_stops_where_it_must_and_says_why() {
     assert!(stops(&subject, &[steps[0].clone(), dwell, steps[1].clone()]).is_empty(), "the job asks for it");
 }
 
-/// Outputs between two joint moves come after the corner, and a point that is taught twice is one.
+/// Messages and settings of the arc between two joint moves come after the corner, and a point that is taught twice is one.
 #[test]
 fn what_takes_no_time_does_not_stop_the_robot() {
     let subject = welding_arm();
     let mut steps = subject.steps(&bend());
+    let current = ArcCondition { current: Some(180.0), ..ArcCondition::default() };
     steps.insert(1, step(9, Action::Message { text: "here".into() }));
-    steps.insert(2, steps[0].clone());
-    let parts = subject.plan(&steps);
-    let kinds: Vec<_> =
-        parts.iter().map(|part| part.segment.map_or("no motion", |info| info.kind.name())).collect();
-    assert_eq!(kinds, ["MOVJ", "corner", "no motion", "no motion", "MOVJ", "corner", "MOVJ"]);
+    steps.insert(2, step(10, Action::ArcSet(current)));
+    steps.insert(3, steps[0].clone());
+    let does = |part: &Planned<6>| match (part.segment, part.commands.first()) {
+        (Some(info), _) => info.kind.name(),
+        (None, Some(Command::ArcSetting(setting))) if setting.current == 180.0 => "180 A",
+        (None, first) => first.map_or("no command", |_| "another command"),
+    };
+    let done: Vec<_> = subject.plan(&steps).iter().map(does).collect();
+    assert_eq!(done, ["MOVJ", "corner", "no command", "180 A", "no command", "MOVJ", "corner", "MOVJ"]);
 }
