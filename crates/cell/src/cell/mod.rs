@@ -10,6 +10,7 @@
 
 mod document;
 mod error;
+mod fault;
 mod frames;
 mod io;
 mod job_rules;
@@ -27,6 +28,7 @@ mod welding;
 use std::path::Path;
 
 pub use error::{CellError, Problem, Suggestion};
+pub use fault::{FaultKind, ScriptedFault};
 pub use frames::{Tool, UserFrame};
 pub use io::{Io, ScriptedInput, UnmetWait, UnscriptedInput};
 pub use job_rules::{JobRules, SpeedUnit, WeldSpeedRule};

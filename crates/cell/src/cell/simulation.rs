@@ -1,6 +1,7 @@
 //! What is not ideal in the simulated cell.
 
 use super::error::CellError;
+use super::fault::ScriptedFault;
 use super::section::{Section, Unit};
 
 /// What the simulated drives and the simulated sensor add to the ideal. SI.
@@ -20,6 +21,8 @@ pub struct Simulation {
     pub arc_misfire: f64,
     /// The simulated laser's errors.
     pub laser: LaserErrors,
+    /// What goes wrong in a run, by ascending time.
+    pub faults: Vec<ScriptedFault>,
 }
 
 /// Errors of the simulated laser. Metres, and probabilities from 0 to 1.
@@ -54,6 +57,7 @@ impl Simulation {
                 spike_probability: section.number("laser_spike_percent", Unit::Percent, 0.0..=100.0)?,
                 dropout_probability: section.number("laser_dropout_percent", Unit::Percent, 0.0..=100.0)?,
             },
+            faults: ScriptedFault::read_all(&mut section, joints)?,
         };
         section.finish()?;
         Ok(simulation)

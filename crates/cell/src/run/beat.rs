@@ -4,8 +4,10 @@ use seamline::control::{CycleOutput, Event, Mode};
 use seamline::safety::Fault;
 
 use super::clock::MonotonicClock;
+use super::inject::FaultScript;
 use super::machine::Machine;
-use crate::record::TimeFigures;
+use crate::plan::PlanningArm;
+use crate::record::{Sample, TimeFigures};
 use crate::sim::{SimulatedArc, SimulatedDrive};
 
 /// What the supervisor needs to know of a cycle.
@@ -51,11 +53,27 @@ pub(super) struct LoopFigures {
     pub(super) remarks: Vec<String>,
 }
 
-pub(super) type SimulatedMachine<const N: usize, K> =
-    Machine<N, K, SimulatedDrive<N>, SimulatedArc, MonotonicClock>;
+/// A controller on simulated devices, and what goes wrong with them.
+pub(super) struct Plant<const N: usize, K> {
+    pub(super) machine: Machine<N, K, SimulatedDrive<N>, SimulatedArc, MonotonicClock>,
+    pub(super) script: FaultScript,
+}
+
+impl<const N: usize, K: PlanningArm<N>> Plant<N, K> {
+    /// The cycle with this number, from 0.
+    pub(super) fn cycle(&mut self, number: u64) -> (Beat, Sample) {
+        if let Some(event) = start_event(number) {
+            self.machine.request(event);
+        }
+        self.script.act(&mut self.machine);
+        let time = self.machine.time();
+        let (output, sample) = self.machine.cycle();
+        (Beat::new(time, &output), sample)
+    }
+}
 
 /// Drives power up in the first cycle, and the job starts in the second.
-pub(super) fn start_event(cycle: u64) -> Option<Event> {
+fn start_event(cycle: u64) -> Option<Event> {
     match cycle {
         0 => Some(Event::Enable),
         1 => Some(Event::Start),

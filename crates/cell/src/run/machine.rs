@@ -21,11 +21,14 @@ const OVERRUNS_IN_ROW: u32 = 20;
 
 /// The cycle's end of the queue.
 #[derive(Debug)]
-struct Queue<const N: usize>(Consumer<Command<N>>);
+struct Queue<const N: usize> {
+    commands: Consumer<Command<N>>,
+    silent: bool,
+}
 
 impl<const N: usize> CommandSource<N> for Queue<N> {
     fn next(&mut self) -> Option<Command<N>> {
-        self.0.pop().ok()
+        if self.silent { None } else { self.commands.pop().ok() }
     }
 }
 
@@ -106,7 +109,7 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock
             cycle: Cycle::with_prefilter(config, arm.kinematics.clone(), prefilter, arm.home),
             devices,
             clock,
-            queue: Queue(queue),
+            queue: Queue { commands: queue, silent: false },
             input: CycleInput {
                 measured: Ok(arm.home),
                 speed_override: 1.0,
@@ -135,6 +138,11 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock
     /// A fault from outside for the next cycle.
     pub fn raise(&mut self, fault: Fault) {
         self.input.fault = Some(fault);
+    }
+
+    /// Whether the planner's commands come no longer.
+    pub fn silence_planner(&mut self, silent: bool) {
+        self.queue.silent = silent;
     }
 
     /// Whether the next cycle begins late.

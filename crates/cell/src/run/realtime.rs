@@ -12,7 +12,7 @@ use thread_priority::{
     set_thread_priority_and_policy, thread_native_id,
 };
 
-use super::beat::{Beat, LoopFigures, SimulatedMachine, start_event};
+use super::beat::{Beat, LoopFigures, Plant};
 use super::supervisor::Supervisor;
 use crate::plan::PlanningArm;
 use crate::record::{SampleSender, TimeHistogram};
@@ -29,7 +29,7 @@ const NANOSECONDS: i64 = 1_000_000_000;
 ///
 /// Without the permission for real-time scheduling the run goes on with the ordinary one, and says so.
 pub(super) fn run<const N: usize, K: PlanningArm<N> + Send>(
-    machine: SimulatedMachine<N, K>,
+    plant: Plant<N, K>,
     samples: SampleSender,
     supervisor: &mut Supervisor<'_, N, K>,
     settle: u64,
@@ -38,7 +38,7 @@ pub(super) fn run<const N: usize, K: PlanningArm<N> + Send>(
     let (beats, mut seen) = RingBuffer::new(BEATS);
     supervisor.feed(0.0);
     thread::scope(|scope| {
-        let cycle = scope.spawn(move || Thread { machine, samples, beats }.run(settle));
+        let cycle = scope.spawn(move || Thread { plant, samples, beats }.run(settle));
         while !cycle.is_finished() {
             while let Ok(beat) = seen.pop() {
                 supervisor.observe(&beat);
@@ -55,7 +55,7 @@ pub(super) fn run<const N: usize, K: PlanningArm<N> + Send>(
 
 /// What the cycle's thread owns.
 struct Thread<const N: usize, K> {
-    machine: SimulatedMachine<N, K>,
+    plant: Plant<N, K>,
     samples: SampleSender,
     beats: Producer<Beat>,
 }
@@ -63,7 +63,7 @@ struct Thread<const N: usize, K> {
 impl<const N: usize, K: PlanningArm<N>> Thread<N, K> {
     fn run(mut self, settle: u64) -> (SampleSender, LoopFigures) {
         let remarks = prepare();
-        let period = (self.machine.period() * NANOSECONDS as f64).round() as i64;
+        let period = (self.plant.machine.period() * NANOSECONDS as f64).round() as i64;
         let mut lateness = TimeHistogram::new();
         let mut overruns = 0;
         let mut deadline = now() + period;
@@ -72,14 +72,9 @@ impl<const N: usize, K: PlanningArm<N>> Thread<N, K> {
             sleep_until(deadline);
             let late = now() - deadline;
             lateness.record(u64::try_from(late).unwrap_or(0));
-            self.machine.set_late(late >= period);
-            if let Some(event) = start_event(cycle) {
-                self.machine.request(event);
-            }
-            let time = self.machine.time();
-            let (output, sample) = self.machine.cycle();
+            self.plant.machine.set_late(late >= period);
+            let (beat, sample) = self.plant.cycle(cycle);
             self.samples.push(sample);
-            let beat = Beat::new(time, &output);
             // A supervisor that is a minute behind misses beats, never the cycle.
             let _ = self.beats.push(beat);
             started |= cycle > 1;
@@ -94,7 +89,7 @@ impl<const N: usize, K: PlanningArm<N>> Thread<N, K> {
                 deadline += missed * period;
             }
         }
-        let stage_times = self.machine.stage_times();
+        let stage_times = self.plant.machine.stage_times();
         let lateness = Some(lateness.figures("lateness"));
         (self.samples, LoopFigures { stage_times, lateness, overruns, remarks })
     }

@@ -6,10 +6,11 @@ use std::time::Instant;
 
 use rtrb::RingBuffer;
 
-use super::beat::{Beat, LoopFigures, SimulatedMachine, start_event};
+use super::beat::{Beat, LoopFigures, Plant};
 use super::check::{CheckReport, check};
 use super::clock::MonotonicClock;
 use super::error::RunError;
+use super::inject::FaultScript;
 use super::machine::{Devices, Machine};
 use super::program::Program;
 use super::realtime;
@@ -92,10 +93,11 @@ pub fn run<const N: usize, K: PlanningArm<N> + Send>(
     let planned = duration / options.speed_override;
     let mut watch = |beat: &Beat| progress(Progress { time: beat.time, planned, line: beat.line });
     let settle = (SETTLE / cell.cycle.period).ceil() as u64;
+    let plant = Plant { machine, script: FaultScript::new(&cell.simulation.faults) };
     let (samples, figures) = if options.realtime {
-        realtime::run(machine, samples, &mut supervisor, settle, &mut watch)
+        realtime::run(plant, samples, &mut supervisor, settle, &mut watch)
     } else {
-        logical(machine, samples, &mut supervisor, settle, &mut watch)
+        logical(plant, samples, &mut supervisor, settle, &mut watch)
     };
     let wall_time = Some(started.elapsed().as_secs_f64());
     let samples_lost = samples.lost();
@@ -108,7 +110,7 @@ pub fn run<const N: usize, K: PlanningArm<N> + Send>(
 
 /// Cycle after cycle, as fast as the machine can: the clock is the count of cycles.
 fn logical<const N: usize, K: PlanningArm<N>>(
-    mut machine: SimulatedMachine<N, K>,
+    mut plant: Plant<N, K>,
     mut samples: SampleSender,
     supervisor: &mut Supervisor<'_, N, K>,
     settle: u64,
@@ -118,19 +120,14 @@ fn logical<const N: usize, K: PlanningArm<N>>(
     let mut left = settle;
     supervisor.feed(0.0);
     while left > 0 {
-        if let Some(event) = start_event(cycle) {
-            machine.request(event);
-        }
-        let time = machine.time();
-        let (output, sample) = machine.cycle();
-        let beat = Beat::new(time, &output);
+        let (beat, sample) = plant.cycle(cycle);
         supervisor.observe(&beat);
         samples.push_waiting(sample);
         watch(&beat);
         cycle += 1;
         left -= u64::from(cycle > 2 && beat.ends_run());
     }
-    (samples, LoopFigures { stage_times: machine.stage_times(), ..LoopFigures::default() })
+    (samples, LoopFigures { stage_times: plant.machine.stage_times(), ..LoopFigures::default() })
 }
 
 /// The figures may be off by what the cell lets a prefilter do.

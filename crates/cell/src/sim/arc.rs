@@ -60,12 +60,12 @@ impl ArcSource for SimulatedArc {
         self.elapsed = command.on.then(|| before.map_or(0.0, |elapsed| elapsed + period));
         let Some(elapsed) = self.elapsed else { return Some(false) };
         if before.is_none() {
-            self.misfires = self.random.unit() < self.misfire;
+            self.misfires = self.random.unit() < self.misfire || self.fault == Some(ArcFault::NoIgnition);
             if self.fault == Some(ArcFault::Loss) {
                 self.fault = None;
             }
         }
-        Some(!self.misfires && self.fault.is_none() && elapsed >= self.ignition)
+        Some(!self.misfires && self.fault != Some(ArcFault::Loss) && elapsed >= self.ignition)
     }
 }
 

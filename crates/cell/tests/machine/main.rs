@@ -11,6 +11,7 @@
 mod bench;
 mod chain;
 mod cycle;
+mod fault_matrix;
 mod faults;
 mod joint_chain;
 mod no_alloc;

@@ -17,7 +17,7 @@ use crate::chain::{HOME, Way};
 const WELD: f64 = 10.0;
 
 /// To the seam, along it past a corner and round an exact one, and away: 20 mm, 30 + 25 + 25 mm, 20 mm.
-fn job(cell: &Cell) -> (Ar2010, Vec<Command<6>>) {
+pub(crate) fn job(cell: &Cell) -> (Ar2010, Vec<Command<6>>) {
     let points = [
         ([20.0, 0.0], 0.0),
         ([50.0, 0.0], 10.0),
@@ -37,20 +37,20 @@ fn job(cell: &Cell) -> (Ar2010, Vec<Command<6>>) {
 }
 
 /// The job under way in a cell.
-fn weld(cell: &Cell) -> Bench {
+pub(crate) fn weld(cell: &Cell) -> Bench {
     let (arm, commands) = job(cell);
     let mut bench = Bench::welding(cell, &arm, commands);
     bench.cycle_with(Event::Start);
     bench
 }
 
-fn default_cell() -> Cell {
+pub(crate) fn default_cell() -> Cell {
     Cell::default_cell().unwrap()
 }
 
 /// The way of the tool in a run that nothing interrupts, with the joints on it, and the part of it on which the arc burns.
-struct Track {
-    rows: Vec<[f64; 6]>,
+pub(crate) struct Track {
+    pub(crate) rows: Vec<[f64; 6]>,
     points: Vec<(f64, Vector3<f64>, [f64; 6])>,
     bead: (f64, f64),
     /// The torch is that near to it, in metres, and each joint to four times that in radians.
@@ -81,6 +81,12 @@ impl Track {
         let (along, offset) = (end - start, tool - start);
         let share = (offset.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
         (share, (offset - along * share).norm())
+    }
+
+    /// Distance of the tool from the path, in metres.
+    pub(crate) fn off(&self, q: &[f64; 6]) -> f64 {
+        let tool = tool(q);
+        (0..self.points.len() - 1).map(|k| self.on_chord(k, &tool).1).fold(f64::INFINITY, f64::min)
     }
 
     /// Way of the tool; it is asserted to be on the path. `near` is the chord it was last on.
@@ -169,7 +175,7 @@ impl Ride {
 }
 
 /// The run without interruption.
-fn track(bench: &Bench) -> Track {
+pub(crate) fn track(bench: &Bench) -> Track {
     let mut ride = Ride::new(bench.clone());
     let mut burning = Vec::new();
     for _ in 0..60_000 {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use indicatif::{ProgressBar, ProgressStyle};
+use seamline_cell::cell::{FaultKind, ScriptedFault};
 use seamline_cell::record::Verdict;
 use seamline_cell::run::{Progress, RunOptions, RunReport};
 
@@ -33,6 +34,23 @@ pub(crate) struct Arguments {
     /// The arc stays out: the job moves as if it burned.
     #[arg(long)]
     dry_run: bool,
+    /// Something that goes wrong, as KIND@SECONDS, or KIND@SECONDS:JOINT for what is one joint's; any number of them. Kinds: drive-silent,
+    /// drive-alarm, joint-stuck, encoder-jump, encoder-nan, emergency-stop, late-cycles, planner-silent, no-ignition, arc-loss.
+    #[arg(long = "fault", value_name = "KIND@TIME", value_parser = fault)]
+    faults: Vec<ScriptedFault>,
+}
+
+/// KIND@SECONDS, with :JOINT from 1.
+fn fault(text: &str) -> Result<ScriptedFault, String> {
+    let expected = || "expected KIND@SECONDS or KIND@SECONDS:JOINT, such as joint-stuck@2.5:3".to_owned();
+    let (kind, at) = text.split_once('@').ok_or_else(expected)?;
+    let kinds = || FaultKind::ALL.map(|(name, _)| name).join(", ");
+    let kind = FaultKind::from_name(kind).ok_or_else(|| format!("expected one of {}", kinds()))?;
+    let (time, joint) = at.split_once(':').unwrap_or((at, "1"));
+    let time =
+        time.parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0).ok_or_else(expected)?;
+    let joint: usize = joint.parse().ok().filter(|joint| *joint > 0).ok_or_else(expected)?;
+    Ok(ScriptedFault { kind, time, joint: joint - 1 })
 }
 
 /// Above 0 to 100.
@@ -46,6 +64,11 @@ fn percent(text: &str) -> Result<f64, String> {
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut inputs = load(&arguments.job, &arguments.cell)?;
     inputs.cell.arc.dry_run |= arguments.dry_run;
+    let joints = inputs.cell.robot.joints.len();
+    if let Some(fault) = arguments.faults.iter().find(|fault| fault.joint >= joints) {
+        bail!("--fault: joint {}: expected 1 to {joints}", fault.joint + 1);
+    }
+    inputs.cell.simulation.faults.extend(&arguments.faults);
     let out = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.job));
     let options = RunOptions {
         out: out.clone(),
