@@ -284,6 +284,10 @@ fn run(setting: &Setting, wrongs: &[Wrong], random: &mut Random) -> Option<Fault
         if reset.status.mode == Mode::Standstill {
             return named;
         }
+        if wrongs.len() > 1 && reset.status.fault.is_some() {
+            // The second one has come in the meantime.
+            continue;
+        }
         assert_eq!((reset.status.mode, reset.status.fault), (Mode::Holding, None));
         // Without power the arm may have come elsewhere.
         run.rows.clear();
