@@ -101,6 +101,51 @@ fn the_same_seed_gives_the_same_recording_bit_by_bit() {
     assert!((4..20).any(|seed| first != recording("seed-3", seed)));
 }
 
+/// Each kind on the command line and one in a cell file: the fault is named with its time and line, and the recording goes up to it.
+#[test]
+fn faults_on_purpose_are_named() {
+    let kinds = [
+        ("drive-silent@10", "drives silent (at 10.001 s, line 33)"),
+        ("drive-alarm@10:3", "drive of joint U: alarm 999 (at 10.001 s, line 33)"),
+        ("joint-stuck@3:2", "following error of joint L"),
+        ("encoder-jump@10:4", "following error of joint R"),
+        ("encoder-nan@10", "joint S is not a number (at 10.001 s, line 33)"),
+        ("emergency-stop@10", "emergency stop (at 10.000 s, line 33)"),
+        ("late-cycles@10", "21 cycles in a row were late (at 10.020 s, line 33)"),
+        ("planner-silent@3", "no motion planned ahead"),
+        ("no-ignition@1", "the arc did not light in 3 strikes"),
+        ("arc-loss@10", "the arc went out (50 ms without current) (at 10.051 s, line 33)"),
+    ];
+    for (fault, message) in kinds {
+        let out = folder(&format!("fault-{}", fault.replace([':', '@'], "-")));
+        let output = seamline(&["run", "examples/jobs/fillet.JBI", "--out", text(&out), "--fault", fault]);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(1) && stderr.contains(message), "{fault}: {stderr}");
+        let recording = fs::read_to_string(out.join("recording.csv")).expect("a recording");
+        assert!(recording.lines().any(|line| line.contains(",fault,")), "{fault}");
+    }
+    let out = folder("fault-cell");
+    let cell = out.join("cell.toml");
+    fs::write(&cell, "[[simulation.fault]]\nnumber = 1\nkind = \"arc-loss\"\ntime_s = 10")
+        .expect("a cell file");
+    let output = seamline(&["run", "examples/jobs/fillet.JBI", "--out", text(&out), "--cell", text(&cell)]);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("the arc went out"));
+}
+
+#[test]
+fn wrong_faults_get_one_message() {
+    for (fault, code, message) in [
+        ("gremlin@1", 2, "expected one of drive-silent, "),
+        ("arc-loss@-1", 2, "expected KIND@SECONDS"),
+        ("arc-loss", 2, "expected KIND@SECONDS"),
+        ("joint-stuck@1:9", 1, "--fault: joint 9: expected 1 to 6"),
+    ] {
+        let output = seamline(&["run", "examples/jobs/fillet.JBI", "--fault", fault]);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(code) && stderr.contains(message), "{fault}: {stderr}");
+    }
+}
+
 #[test]
 fn a_dry_run_moves_the_same_way_without_an_arc() {
     let (wet, dry) = (run_example("fillet", &[]), run_example("fillet", &["--dry-run"]));

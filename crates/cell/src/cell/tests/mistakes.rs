@@ -54,6 +54,14 @@ const MISTAKES: &[(&str, &str)] = &[
         "[[tool]]\nnumber = 5\n",
         "cell.toml:1:1: tool[5].x_mm: missing, expected a number from -100000 to 100000",
     ),
+    (
+        "[[simulation.fault]]\nnumber = 1\nkind = \"arc-loss\"\ntime_s = -1\n",
+        "cell.toml:4:10: simulation.fault[1].time_s: found -1, expected a number from 0 to 1000000",
+    ),
+    (
+        "[[simulation.fault]]\nnumber = 1\nkind = \"arc-loss\"\ntime_s = 1\njoint = 7\n",
+        "cell.toml:5:9: simulation.fault[1].joint: found 7, expected a whole number from 1 to 6",
+    ),
     ("[[tool]]\nnumber = 5\nx_m = 0.1\n", "cell.toml:3:1: tool[5].x_m: unknown key, did you mean x_mm?"),
     (
         "[[tool]]\nnumber = 0\nz_mm = \"458\"\n",
