@@ -245,7 +245,7 @@ fn the_motion_of_least_time_beside_fir_zvd() {
         ("experiment scara --prefilter zv", 2, "expected auto"),
         ("experiment scara --max-g 0.2", 2, "--prefilter"),
         ("experiment scara --prefilter auto --max-g 0", 2, "above 0"),
-        ("experiment scara --prefilter auto --jerk-m-s3 -1", 2, "above 0"),
+        ("experiment scara --prefilter auto --jerk-m-s3 0", 2, "above 0"),
         ("experiment scara --prefilter auto --max-g 1e-9", 1, "no motion keeps"),
         ("check missing.JBI --prefilter auto", 2, "experiment scara"),
     ];

@@ -116,7 +116,9 @@ fn quickest<'a>(
     feedrate: f64,
     quiet: &Quiet,
 ) -> Option<(QuietMotion<'a>, f64)> {
-    let mut asked = quiet.acceleration;
+    // A bound far above what the command does is none, and would take the scale from all others.
+    let most = quiet.acceleration.min(quiet.command);
+    let mut asked = most;
     let mut best: Option<(QuietMotion<'a>, f64)> = None;
     for _ in 0..ROUNDS {
         let Some(motion) = fitting(path, mode, feedrate, &Quiet { acceleration: asked, ..*quiet }, 0.0)
@@ -128,10 +130,10 @@ fn quickest<'a>(
         if reached <= quiet.acceleration && sooner {
             best = Some((motion, asked));
         }
-        if (1.0 - CLOSE..=1.0).contains(&(reached / quiet.acceleration)) {
+        if (1.0 - CLOSE..=1.0).contains(&(reached / most)) || (asked >= quiet.command && reached <= most) {
             break;
         }
-        asked *= (1.0 - 0.5 * CLOSE) * quiet.acceleration / reached;
+        asked = (asked * (1.0 - 0.5 * CLOSE) * most / reached).min(quiet.command);
     }
     best
 }
