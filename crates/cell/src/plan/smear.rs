@@ -101,13 +101,24 @@ impl Smear {
     pub(super) fn mean_off(&self, off: impl Fn(usize) -> f64) -> f64 {
         let off: Vec<f64> = (0..CELLS + 2 * MORE_CELLS).map(off).collect();
         let shares = || self.shares.iter().enumerate();
-        let at = |middle: usize| {
+        let sides = |middle: usize| {
             let after = shares().take(middle).map(|(cell, share)| share * off[middle - cell]);
             let before = shares().skip((middle + 1).saturating_sub(self.kernels));
             let before = before.map(|(cell, share)| share * off[cell + self.kernels - middle]);
-            2.0 * after.sum::<f64>().max(before.sum())
+            (after.sum::<f64>(), before.sum::<f64>())
         };
-        (0..=CELLS).map(at).fold(f64::INFINITY, f64::min)
+        // The longer ago the middle, the more has come in after it, and the less before.
+        let (mut low, mut high) = (0, CELLS);
+        while high - low > 1 {
+            let middle = (low + high) / 2;
+            let (after, before) = sides(middle);
+            if after < before { low = middle } else { high = middle }
+        }
+        let at = |middle: usize| {
+            let (after, before) = sides(middle);
+            2.0 * after.max(before)
+        };
+        at(low).min(at(high))
     }
 
     /// How far the tool is off at a speed.

@@ -85,8 +85,11 @@ impl Passing<'_> {
         let offsets = self.offsets(self.fastest * smear.length);
         let speed = self.steady(&offsets, smear).min(smear.speed(&bends[0], FOR_JOINTS * self.permitted));
         let steady = Pass { speed, reach: speed * smear.length };
+        if arc || speed >= self.fastest {
+            return steady;
+        }
         let lingering = Pass { speed: self.lingering(offsets, smear, &bends[1]), reach: 0.0 };
-        let linger = !arc && self.lost(&lingering, self.fastest) < self.lost(&steady, self.fastest);
+        let linger = self.lost(&lingering, self.fastest) < self.lost(&steady, self.fastest);
         if linger { lingering } else { steady }
     }
 
