@@ -5,18 +5,21 @@ use seamline::geometry::Vector3;
 /// Steps of the search for the nearest place between two samples: each leaves two thirds of what is searched.
 const SEARCH: usize = 24;
 
+/// Samples that a curve is laid through.
+const SAMPLES: usize = 6;
+
 /// Follows the tool past a corner.
 #[derive(Debug, Clone)]
 pub(super) struct CornerWatch {
     corner: Vector3,
-    /// The last four positions, the oldest first, or fewer at the beginning.
+    /// The last positions, the oldest first, or fewer at the beginning.
     last: Vec<Vector3>,
     distance: f64,
 }
 
 impl CornerWatch {
     pub(super) fn new(corner: Vector3) -> Self {
-        Self { corner, last: Vec::with_capacity(5), distance: f64::INFINITY }
+        Self { corner, last: Vec::with_capacity(SAMPLES + 1), distance: f64::INFINITY }
     }
 
     /// Takes the next position.
@@ -24,30 +27,32 @@ impl CornerWatch {
         let from = self.last.last().copied().unwrap_or(position);
         self.distance = self.distance.min(distance_to_segment(&self.corner, &from, &position));
         self.last.push(position);
-        if self.last.len() > 4 {
+        if self.last.len() > SAMPLES {
             self.last.remove(0);
         }
-        if let [a, b, c, d] = self.last[..] {
-            self.distance = self.distance.min(distance_between(&self.corner, &[a, b, c, d]));
+        if let Some(samples) = self.last.first_chunk() {
+            self.distance = self.distance.min(distance_between(&self.corner, samples));
         }
     }
 
-    /// The least distance between the corner and the way of the tool. Samples are joined by the cubic through them and their
-    /// neighbours: a straight line would cut the curve short, and lie further from the corner.
+    /// The least distance between the corner and the way of the tool. Samples are joined by the polynomial of degree five
+    /// through them and their neighbours: a straight line would cut the curve short, and lie further from the corner.
     pub(super) fn distance(&self) -> Option<f64> {
         Some(self.distance).filter(|distance| distance.is_finite())
     }
 }
 
-/// Least distance of a point from the cubic through four samples, between the second and the third.
-fn distance_between(point: &Vector3, [a, b, c, d]: &[Vector3; 4]) -> f64 {
-    let at = |t: f64| {
-        let (s, u, v) = (t + 1.0, t - 1.0, t - 2.0);
-        let place =
-            a * (-t * u * v / 6.0) + b * (s * u * v / 2.0) + c * (-s * t * v / 2.0) + d * (s * t * u / 6.0);
-        (place - point).norm()
+/// Least distance of a point from the polynomial through the samples, between the two in the middle.
+fn distance_between(point: &Vector3, samples: &[Vector3; SAMPLES]) -> f64 {
+    let weight = |node: usize, t: f64| {
+        let others = (0..SAMPLES).filter(|other| *other != node).map(|other| other as f64);
+        others.map(|other| (t - other) / (node as f64 - other)).product::<f64>()
     };
-    let [mut low, mut high] = [0.0, 1.0];
+    let at = |t: f64| {
+        let weighted = samples.iter().enumerate().map(|(node, sample)| sample * weight(node, t));
+        (weighted.sum::<Vector3>() - point).norm()
+    };
+    let [mut low, mut high] = [2.0, 3.0];
     for _ in 0..SEARCH {
         let third = (high - low) / 3.0;
         if at(low + third) < at(high - third) {
@@ -93,6 +98,6 @@ mod tests {
             watch.push(Vector3::new(cos, sin, 0.0) * 1e-3);
         }
         let error = watch.distance().unwrap() - 5e-4;
-        assert!(error.abs() < 2e-10, "{error}");
+        assert!(error.abs() < 1e-12, "{error}");
     }
 }
