@@ -18,6 +18,8 @@ const NEAREST: f64 = 0.1;
 const SHARE: f64 = 0.95;
 /// Share of the path's own speed limit.
 const PATH_SHARE: f64 = 0.998;
+/// From this share on, a rough motion has the path's own speed.
+const ROUGHLY: f64 = 0.96;
 /// An anchor that costs more than this share of the speed is only made where a window is too long.
 const COSTLY: f64 = 0.1;
 /// Time in which a motion is bent towards an anchor, on either side, and the slowest pace that this may give.
@@ -80,7 +82,8 @@ pub(super) fn anchors<const N: usize, P: JointPath<N>>(
 }
 
 /// The speed without acceleration that a motion can have where it has this state: what the joints could hold, and
-/// less than the motion has by what it takes to lose its acceleration.
+/// less than the motion has by what it takes to lose its acceleration. A rough motion that nearly has the path's speed
+/// would have it if it were exact.
 fn held<const N: usize>(
     jet: &JointJet<N>,
     joints: &TimingLimits<N>,
@@ -96,7 +99,8 @@ fn held<const N: usize>(
         speed = speed.min(SHARE * most);
         jerk = jerk.min(joints.jerk[i] / jet.velocity[i].abs());
     }
-    speed.min(state.velocity - state.acceleration * state.acceleration / jerk)
+    let bent = state.velocity - state.acceleration * state.acceleration / jerk;
+    if bent > ROUGHLY * path.speed { speed } else { speed.min(bent) }
 }
 
 /// A rough motion, bent so that it has the speeds of its ends and no acceleration there, or nearly so: good enough
