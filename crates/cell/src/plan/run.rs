@@ -22,6 +22,8 @@ const HORIZON: f64 = 1.0;
 const FARTHEST: f64 = 8.0;
 /// A closed run that takes no longer than this many horizons is looked at whole.
 const WHOLE: f64 = 2.0;
+/// Share of a corner's permitted error that is used: what is left is what a run's samples leave unknown of it.
+const USED: f64 = 1.0 - 1e-5;
 /// Two places of a path nearer than this are one: a nanometre.
 const SAME_PLACE: f64 = 1e-9;
 
@@ -152,7 +154,7 @@ impl<const N: usize> Run<N> {
         };
         let lengths = [last.link.path.length(), link.path.length()];
         let speed = last.limits.speed.max(link.limits.speed);
-        let permitted = last.link.pass.unwrap_or(0.0);
+        let permitted = USED * last.link.pass.unwrap_or(0.0);
         let of_both = [&last.link.permitted, &link.permitted];
         let blend = |error| passing([&last.path, &link.path], lengths, speed, error);
         let Some(mut corner) = blend(permitted)? else {
