@@ -44,8 +44,7 @@ impl Default for Acceptance {
         Self {
             path_deviation: 1e-6,
             orientation_deviation: 1e-6,
-            // What the curve through the samples is known to.
-            corner_error: 1.0001,
+            corner_error: 1.0,
             weld_speed_error: 0.01,
             joint: 1.0,
             joint_jerk: 1.01,
