@@ -11,6 +11,7 @@
 //! | [`record`] | what a run leaves behind: recording, figures, data for plots |
 //! | [`run`] | one job in one cell: check, run, real time |
 //! | [`robot`] | arms whose number of joints is known only at run time: built in, from a cell file, from URDF |
+//! | [`sensor`] | seam sensors: replay of a recording, simulated laser, EGM over UDP |
 //! | [`sim`] | simulated servo drives and power source |
 
 pub mod cell;
@@ -22,4 +23,5 @@ pub mod plan;
 pub mod record;
 pub mod robot;
 pub mod run;
+pub mod sensor;
 pub mod sim;

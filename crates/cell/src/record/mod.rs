@@ -9,7 +9,7 @@ mod csv;
 mod envelope;
 mod figures;
 mod info;
-mod number;
+pub(crate) mod number;
 mod plot;
 mod recorder;
 mod recording;

@@ -4,14 +4,14 @@
 //! the text moves instead, and moves back on reading.
 
 /// Appends `value`; nothing for NaN, so that the cell of a table stays empty.
-pub(super) fn push(text: &mut Vec<u8>, value: f64) {
+pub(crate) fn push(text: &mut Vec<u8>, value: f64) {
     if !value.is_nan() {
         text.extend_from_slice(zmij::Buffer::new().format(value).as_bytes());
     }
 }
 
 /// Appends a length given in metres as millimetres: exactly the decimal number, times 1000.
-pub(super) fn push_mm(text: &mut Vec<u8>, metres: f64) {
+pub(crate) fn push_mm(text: &mut Vec<u8>, metres: f64) {
     if metres.is_nan() {
         return;
     }
@@ -43,12 +43,12 @@ pub(super) fn push_mm(text: &mut Vec<u8>, metres: f64) {
 }
 
 /// Reads what [`push`] wrote.
-pub(super) fn parse(text: &str) -> Option<f64> {
+pub(crate) fn parse(text: &str) -> Option<f64> {
     if text.is_empty() { Some(f64::NAN) } else { text.parse().ok() }
 }
 
 /// Reads what [`push_mm`] wrote, in metres.
-pub(super) fn parse_mm(text: &str) -> Option<f64> {
+pub(crate) fn parse_mm(text: &str) -> Option<f64> {
     if text.is_empty() {
         return Some(f64::NAN);
     }

@@ -5,6 +5,7 @@
 //! | `taught` | what tracking asks of the taught path: poses along it, the foot of a point on it; chains of paths |
 //! | `frame` | the motion of a path with the lane in it |
 //! | `measurement` | a sensor's readings, where the sensor sits, and every reason not to believe one |
+//! | `source` | what stands between the cycle and a sensor |
 //! | `poses` | where the torch was when a reading was exposed |
 //! | `gate` | spikes found among their neighbours on both sides |
 //! | `tack` | tack welds, told from the seam |
@@ -34,6 +35,7 @@ mod measurement;
 mod poses;
 mod regression;
 mod settings;
+mod source;
 mod tack;
 mod taught;
 mod tracker;
@@ -41,7 +43,9 @@ mod tracker;
 pub use frame::{corrected, speed_factor};
 pub use lane::{Lane, LaneJet, LaneRecord};
 pub use measurement::{Counts, Reading, Rejection, Sensor};
+pub use poses::Instant;
 pub use settings::{Budget, Filter, LostLane, Settings, SettingsError};
+pub use source::SeamSensor;
 pub use tack::TackMask;
 pub use taught::{ChainError, Foot, PathChain, TaughtPath, foot};
 pub use tracker::{ControlPoint, Lost, SeamTracker};

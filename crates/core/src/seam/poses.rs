@@ -8,10 +8,13 @@ const CAPACITY: usize = 64;
 
 /// The torch at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Instant {
-    pub(super) time: f64,
-    pub(super) s: f64,
-    pub(super) base_from_tcp: Pose,
+pub struct Instant {
+    /// On the cycle's clock, in seconds.
+    pub time: f64,
+    /// Path coordinate in metres.
+    pub s: f64,
+    /// The measured tool centre point in the base frame.
+    pub base_from_tcp: Pose,
 }
 
 /// A ring of measured poses over the age that a reading may have, and the newest one. In between they are interpolated; at 5 ms apart
