@@ -1,9 +1,10 @@
-//! Seam sensors: what a recording gives back, and what an EGM client can and cannot do.
+//! Seam sensors: what a recording gives back, what a simulated laser sees, and what an EGM client can and cannot do.
 
 #![allow(clippy::panic, clippy::unwrap_used, clippy::expect_used, reason = "a failing test says where")]
 
 mod datagrams;
 mod egm_client;
+mod laser;
 mod replay;
 
 use seamline::geometry::Pose;
