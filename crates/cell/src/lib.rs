@@ -19,6 +19,7 @@ pub mod experiment;
 pub mod gcode;
 pub mod identify;
 pub mod job;
+mod least;
 pub mod plan;
 pub mod record;
 pub mod robot;

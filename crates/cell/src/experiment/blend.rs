@@ -4,6 +4,8 @@ use nalgebra::Vector3;
 use seamline::path::Path;
 use seamline::vibration::{Corner, Overlap, Ramp, angle_between, reachable_feedrate};
 
+use crate::least::least_between;
+
 /// The corner error is used to this fraction: curvature is met by iteration.
 const CLOSE: f64 = 1e-4;
 /// Bound of that iteration; two or three steps are usual.
@@ -145,14 +147,5 @@ fn distance(first: &Segment<'_>, second: &Segment<'_>, overlap: &Overlap) -> f64
     let corner = first.path.pose(first.path.length()).translation.vector;
     let place = |time: f64| superposed([&first, &second].into_iter().map(|s| (s.path, s.way(time))));
     let at = |time: f64| (place(time) - corner).norm();
-    let (mut low, mut high) = (begin + overlap.delay, begin + overlap.deceleration);
-    for _ in 0..THIRDS {
-        let third = (high - low) / 3.0;
-        if at(low + third) < at(high - third) {
-            high -= third;
-        } else {
-            low += third;
-        }
-    }
-    at(0.5 * (low + high))
+    at(least_between(at, [begin + overlap.delay, begin + overlap.deceleration], THIRDS))
 }

@@ -2,6 +2,8 @@
 
 use seamline::geometry::Vector3;
 
+use crate::least::least_between;
+
 /// Steps of the search for the nearest place between two samples: each leaves two thirds of what is searched.
 const SEARCH: usize = 24;
 
@@ -52,16 +54,7 @@ fn distance_between(point: &Vector3, samples: &[Vector3; SAMPLES]) -> f64 {
         let weighted = samples.iter().enumerate().map(|(node, sample)| sample * weight(node, t));
         (weighted.sum::<Vector3>() - point).norm()
     };
-    let [mut low, mut high] = [2.0, 3.0];
-    for _ in 0..SEARCH {
-        let third = (high - low) / 3.0;
-        if at(low + third) < at(high - third) {
-            high -= third;
-        } else {
-            low += third;
-        }
-    }
-    at(0.5 * (low + high))
+    at(least_between(at, [2.0, 3.0], SEARCH))
 }
 
 fn distance_to_segment(point: &Vector3, from: &Vector3, to: &Vector3) -> f64 {
