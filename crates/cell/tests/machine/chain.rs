@@ -256,6 +256,7 @@ fn a_spline_passes_its_points() {
 pub(crate) fn random_runs(seed: u64, cases: usize, cell: &Cell) {
     let mut random = Random(seed);
     let prefiltered = !cell.vibration.kernels().is_empty();
+    let mut out_of_reach = 0;
     for case in 0..cases {
         let (mut at, mut points) = ([0.0, 0.0], Vec::new());
         for _ in 0..6 {
@@ -279,6 +280,7 @@ pub(crate) fn random_runs(seed: u64, cases: usize, cell: &Cell) {
             (0..6).map(|k| way.step(k + 1, MovePath::Linear, speeds[k], zones[k])).collect();
         if prefiltered && planned(&Cell::default_cell().unwrap(), &way.arm, &steps).is_err() {
             // The arm cannot go there, with or without prefilter.
+            out_of_reach += 1;
             continue;
         }
         let parts = way.plan(&steps);
@@ -307,6 +309,7 @@ pub(crate) fn random_runs(seed: u64, cases: usize, cell: &Cell) {
             assert!(*speed <= most * 1001.0 + 1e-3, "case {case}, cycle {k}: {speed} mm/s of {most} m/s");
         }
     }
+    assert!(out_of_reach * 20 <= cases, "{out_of_reach} of {cases} are no runs");
 }
 
 #[test]
