@@ -167,6 +167,44 @@ fn check_names_the_slowdown_before_anything_moves() {
     assert!(stdout.contains("mm/s could be held all along; it works with the torch tilted by"), "{stdout}");
 }
 
+/// A line on which the wrist passes beside its pole, so that joint R would have to turn by half a turn: beyond its range, or all at once. Both
+/// are refused before anything moves, with the place along the move and a torch angle that works.
+#[test]
+fn a_flip_at_the_wrist_is_refused_before_anything_moves() {
+    for (ends, reason) in [
+        (
+            ["0,19077,-23893,12290,15937,0", "868,17238,-23893,12290,-12284,0"],
+            "joint R is at its limit of 149.0 deg",
+        ),
+        (
+            ["0,19077,-23893,-4296,15780,0", "-886,17298,-23893,-4296,-11858,0"],
+            "joint R would have to jump: the path crosses a singularity",
+        ),
+    ] {
+        let out = folder("flip");
+        let job = out.join("FLIP.JBI");
+        let points = format!("C00000={}\nC00001={}", ends[0], ends[1]);
+        let moves = "MOVJ C00000 VJ=25.00 PL=0\nMOVL C00001 V=100.0 PL=0";
+        let text_of_job = format!(
+            "/JOB\n//NAME FLIP\n//POS\n///NPOS 2,0,0,0,0,0\n///TOOL 0\n///POSTYPE PULSE\n///PULSE\n{points}\n//INST\n\
+             ///DATE 2026/01/15 09:00\n///ATTR SC,RW\n///GROUP1 RB1\nNOP\n{moves}\nEND\n"
+        );
+        fs::write(&job, text_of_job).expect("a job");
+        let results = out.join("results");
+        for arguments in [&["check", text(&job)][..], &["run", text(&job), "--out", text(&results)]] {
+            let output = seamline(arguments);
+            let message = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(1), "{message}");
+            assert!(message.contains("FLIP.JBI:16:1: at 140."), "{message}");
+            assert!(
+                message.contains(reason) && message.contains("it works with the torch tilted by"),
+                "{message}"
+            );
+        }
+        assert!(!results.join("recording.csv").exists());
+    }
+}
+
 #[test]
 fn the_printed_cell_is_the_default_cell() {
     let printed = seamline(&["cell", "--print"]).stdout;
