@@ -16,6 +16,8 @@ const RANGE: [f64; 2] = [0.4, 0.9];
 const NEAREST: f64 = 0.1;
 /// Share of the highest constant speed that the joints could hold which an anchor may take.
 const SHARE: f64 = 0.95;
+/// Joints that could hold this many times the path's own speed can hold that.
+const SPARE: f64 = 1.01;
 /// Share of the path's own speed limit.
 const PATH_SHARE: f64 = 0.998;
 /// From this share on, a rough motion has the path's own speed.
@@ -96,7 +98,9 @@ fn held<const N: usize>(
         let bending = (joints.acceleration[i] / jet.acceleration[i].abs()).sqrt();
         let twisting = (joints.jerk[i] / jet.jerk[i].abs()).cbrt();
         let most = (joints.velocity[i] / jet.velocity[i].abs()).min(bending).min(twisting);
-        speed = speed.min(SHARE * most);
+        if most < SPARE * path.speed {
+            speed = speed.min(SHARE * most);
+        }
         jerk = jerk.min(joints.jerk[i] / jet.velocity[i].abs());
     }
     let bent = state.velocity - state.acceleration * state.acceleration / jerk;
@@ -131,4 +135,37 @@ pub(super) fn bent(rough: &[TimingPiece], ends: [End; 2]) -> Vec<TimingPiece> {
         let pace = 1.0 + near[0] + far[0];
         if pace < SLOWEST { [SLOWEST, 0.0] } else { [pace, near[1] - far[1]] }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::timing::motion::{PathState, joining};
+    use crate::plan::timing::{PathLimits, Stretch};
+
+    /// A joint that could follow 2 % faster than programmed, and a rough motion 2.5 % slower: the anchor is no dip in the speed.
+    #[test]
+    fn an_anchor_where_the_joints_can_follow_is_no_dip() {
+        struct Bend;
+        impl JointPath<1> for Bend {
+            type Error = ();
+            fn length(&self) -> f64 {
+                1.0
+            }
+            fn jet(&mut self, s: f64) -> Result<JointJet<1>, ()> {
+                let acceleration = [10.0 / (0.204 * 0.204)];
+                Ok(JointJet { position: [s], velocity: [1.0], acceleration, jerk: [0.0] })
+            }
+        }
+        let joints = TimingLimits { velocity: [1.0], acceleration: [10.0], jerk: [500.0] };
+        let limits = PathLimits { speed: 0.2, acceleration: 10.0, jerk: 500.0 };
+        let limits = Limits::new::<()>(&[Stretch { to: 1.0, limits }], 1.0).unwrap();
+        let state = PathState { velocity: 0.195, ..PathState::default() };
+        let cruise = joining(&state, &PathState { position: 0.00195, ..state }, 0.01);
+        let rough: Vec<_> =
+            (0..100).map(|k| TimingPiece { position: 0.00195 * f64::from(k), ..cruise }).collect();
+        let anchors = anchors(&mut Bend, &joints, &limits, &rough, Some(0.3)).unwrap();
+        let held = |anchor: &Anchor| anchor.speed > 0.99 * 0.2 && anchor.speed <= 0.2;
+        assert!(!anchors.is_empty() && anchors.iter().all(held), "{anchors:?}");
+    }
 }
