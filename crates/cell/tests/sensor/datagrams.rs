@@ -2,7 +2,7 @@
 
 use abbegm::msg::EgmSensorPathCorr;
 use prost_of_peer::Message;
-use seamline_cell::sensor::egm::{Drop, EgmGate};
+use seamline_cell::sensor::egm::{DropReason, EgmGate};
 
 use crate::Random;
 
@@ -21,7 +21,7 @@ fn nothing_bad_passes() {
     let mut random = Random(6510);
     let mut gate = EgmGate::new(AGE_MAX);
     let mut last = None;
-    let (mut passed, mut dropped) = (0_u32, [0_u32; Drop::ALL.len()]);
+    let (mut passed, mut dropped) = (0_u32, [0_u32; DropReason::ALL.len()]);
     for case in 0..1_000_000_u32 {
         let time = f64::from(case) * STEP;
         let datagram = if case % 2 == 0 { noise(&mut random) } else { mutated(&mut random, case) };
@@ -45,7 +45,13 @@ fn nothing_bad_passes() {
     }
     // Each reason that the judge has came up, and good ones went through.
     assert!(passed > 1_000, "{passed}");
-    for reason in [Drop::Malformed, Drop::OtherType, Drop::NotFinite, Drop::Stale, Drop::Replayed] {
+    for reason in [
+        DropReason::Malformed,
+        DropReason::OtherType,
+        DropReason::NotFinite,
+        DropReason::Stale,
+        DropReason::Replayed,
+    ] {
         assert!(dropped[reason as usize] > 100, "{}: {dropped:?}", reason.name());
     }
 }
@@ -80,23 +86,23 @@ fn each_mistake_has_its_reason() {
     let good = |number| encoded(number, [0.0, 1.5, -2.0], 10);
     let correction = gate.judge(&good(7), 0.0).expect("a good one");
     assert_eq!((correction.lateral, correction.height, correction.age), (1.5e-3, -2e-3, 10e-3));
-    assert_eq!(gate.judge(&good(7), 0.004), Err(Drop::Replayed));
-    assert_eq!(gate.judge(&good(6), 0.008), Err(Drop::Replayed));
+    assert_eq!(gate.judge(&good(7), 0.004), Err(DropReason::Replayed));
+    assert_eq!(gate.judge(&good(6), 0.008), Err(DropReason::Replayed));
     assert!(gate.judge(&good(9), 0.012).is_ok(), "one was lost");
-    assert_eq!(gate.judge(&encoded(10, [0.0; 3], 101), 0.016), Err(Drop::Stale));
-    assert_eq!(gate.judge(&encoded(10, [f64::NAN, 0.0, 0.0], 1), 0.016), Err(Drop::NotFinite));
-    assert_eq!(gate.judge(&[], 0.016), Err(Drop::Malformed));
-    assert_eq!(gate.judge(&good(10)[..20], 0.016), Err(Drop::Malformed));
+    assert_eq!(gate.judge(&encoded(10, [0.0; 3], 101), 0.016), Err(DropReason::Stale));
+    assert_eq!(gate.judge(&encoded(10, [f64::NAN, 0.0, 0.0], 1), 0.016), Err(DropReason::NotFinite));
+    assert_eq!(gate.judge(&[], 0.016), Err(DropReason::Malformed));
+    assert_eq!(gate.judge(&good(10)[..20], 0.016), Err(DropReason::Malformed));
     let pose = abbegm::msg::EgmSensor {
         header: Some(abbegm::msg::EgmHeader::correction(10, 0)),
         planned: None,
         speed_ref: None,
     };
-    assert_eq!(gate.judge(&pose.encode_to_vec(), 0.016), Err(Drop::OtherType));
+    assert_eq!(gate.judge(&pose.encode_to_vec(), 0.016), Err(DropReason::OtherType));
     // Dropped ones use no number up.
     assert!(gate.judge(&good(10), 0.020).is_ok());
     // A forged number locks the client out for a second, and no longer.
     assert!(gate.judge(&good(u32::MAX), 0.024).is_ok());
-    assert_eq!(gate.judge(&good(11), 1.0), Err(Drop::Replayed));
+    assert_eq!(gate.judge(&good(11), 1.0), Err(DropReason::Replayed));
     assert!(gate.judge(&good(12), 1.1).is_ok());
 }

@@ -8,7 +8,7 @@ use abbegm::msg::EgmSensorPathCorr;
 use abbegm::sync_peer::EgmPeer;
 use prost_of_peer::Message;
 use seamline::seam::SeamSensor;
-use seamline_cell::sensor::egm::{Drop, EgmSensor, EgmSettings};
+use seamline_cell::sensor::egm::{DropReason, EgmSensor, EgmSettings};
 
 use crate::torch;
 
@@ -89,7 +89,7 @@ fn what_is_wrong_or_foreign_is_counted() {
     }
     let counts = sensor.counts();
     assert_eq!((readings, counts.accepted), (1, 1), "{counts:?}");
-    for reason in [Drop::Foreign, Drop::Malformed, Drop::Replayed] {
+    for reason in [DropReason::Foreign, DropReason::Malformed, DropReason::Replayed] {
         assert_eq!(counts.of(reason), 1, "{}: {counts:?}", reason.name());
     }
 }
@@ -105,12 +105,12 @@ fn a_cycle_that_does_not_ask_loses_readings_only() {
         thread::sleep(Duration::from_micros(200));
     }
     for _ in 0..1000 {
-        if sensor.counts().of(Drop::RingFull) == 200 - 64 {
+        if sensor.counts().of(DropReason::RingFull) == 200 - 64 {
             break;
         }
         thread::sleep(Duration::from_millis(5));
     }
-    assert_eq!(sensor.counts().of(Drop::RingFull), 200 - 64);
+    assert_eq!(sensor.counts().of(DropReason::RingFull), 200 - 64);
     let left = std::iter::from_fn(|| sensor.poll(&torch(1.0))).count();
     assert_eq!(left, 64);
 }

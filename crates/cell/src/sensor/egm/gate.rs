@@ -24,7 +24,7 @@ pub struct Correction {
 
 /// Why a datagram was dropped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Drop {
+pub enum DropReason {
     /// From another address than the client's.
     Foreign,
     /// Too long, no protobuf, or without one of the fields that it must have.
@@ -41,7 +41,7 @@ pub enum Drop {
     RingFull,
 }
 
-impl Drop {
+impl DropReason {
     /// All of them.
     pub const ALL: [Self; 7] = [
         Self::Foreign,
@@ -90,38 +90,38 @@ impl EgmGate {
     ///
     /// # Errors
     /// Why it is dropped.
-    pub fn judge(&mut self, datagram: &[u8], time: f64) -> Result<Correction, Drop> {
+    pub fn judge(&mut self, datagram: &[u8], time: f64) -> Result<Correction, DropReason> {
         let correction = decode(datagram)?;
         if correction.age > self.age_max {
-            return Err(Drop::Stale);
+            return Err(DropReason::Stale);
         }
         let replayed =
             |(number, accepted): (u32, f64)| correction.number <= number && time - accepted <= SESSION;
         if self.last.is_some_and(replayed) {
-            return Err(Drop::Replayed);
+            return Err(DropReason::Replayed);
         }
         self.last = Some((correction.number, time));
         Ok(correction)
     }
 }
 
-fn decode(datagram: &[u8]) -> Result<Correction, Drop> {
+fn decode(datagram: &[u8]) -> Result<Correction, DropReason> {
     if datagram.len() > LENGTH_MAX {
-        return Err(Drop::Malformed);
+        return Err(DropReason::Malformed);
     }
-    let message = SensorPathCorr::decode(datagram).map_err(|_| Drop::Malformed)?;
-    let header = message.header.ok_or(Drop::Malformed)?;
+    let message = SensorPathCorr::decode(datagram).map_err(|_| DropReason::Malformed)?;
+    let header = message.header.ok_or(DropReason::Malformed)?;
     if header.mtype != Some(PATH_CORRECTION) {
-        return Err(Drop::OtherType);
+        return Err(DropReason::OtherType);
     }
     let fields = || {
         let correction = message.path_corr?;
         let position = correction.pos?;
         Some((header.seqno?, [position.x?, position.y?, position.z?], correction.age?))
     };
-    let (number, position, age_ms) = fields().ok_or(Drop::Malformed)?;
+    let (number, position, age_ms) = fields().ok_or(DropReason::Malformed)?;
     if !position.iter().all(|x| x.is_finite()) {
-        return Err(Drop::NotFinite);
+        return Err(DropReason::NotFinite);
     }
     let [_, lateral, height] = position.map(|millimetres| millimetres * 1e-3);
     Ok(Correction { number, lateral, height, age: f64::from(age_ms) * 1e-3 })

@@ -11,7 +11,7 @@ use prost::Message;
 use rtrb::{Consumer, Producer, RingBuffer};
 use seamline::seam::{Instant, Reading, SeamSensor};
 
-use super::gate::{Correction, Drop, EgmGate, LENGTH_MAX};
+use super::gate::{Correction, DropReason, EgmGate, LENGTH_MAX};
 use super::messages;
 
 /// Corrections that wait for the cycle: a quarter of a second at 250 Hz.
@@ -37,13 +37,13 @@ pub struct EgmSettings {
 pub struct EgmCounts {
     /// Handed to the cycle.
     pub accepted: u64,
-    dropped: [u64; Drop::ALL.len()],
+    dropped: [u64; DropReason::ALL.len()],
 }
 
 impl EgmCounts {
     /// Datagrams dropped for a reason.
     #[must_use]
-    pub fn of(&self, reason: Drop) -> u64 {
+    pub fn of(&self, reason: DropReason) -> u64 {
         self.dropped[reason as usize]
     }
 
@@ -58,12 +58,12 @@ impl EgmCounts {
 #[derive(Debug, Default)]
 struct Shared {
     accepted: AtomicU64,
-    dropped: [AtomicU64; Drop::ALL.len()],
+    dropped: [AtomicU64; DropReason::ALL.len()],
     ended: AtomicBool,
 }
 
 impl Shared {
-    fn count(&self, reason: Drop) {
+    fn count(&self, reason: DropReason) {
         self.dropped[reason as usize].fetch_add(1, Ordering::Relaxed);
     }
 }
@@ -145,7 +145,7 @@ impl SeamSensor for EgmSensor {
         while let Ok((correction, received)) = self.corrections.pop() {
             let age = correction.age + received.elapsed().as_secs_f64();
             if age > self.age_max {
-                self.shared.count(Drop::Stale);
+                self.shared.count(DropReason::Stale);
                 continue;
             }
             self.shared.accepted.fetch_add(1, Ordering::Relaxed);
@@ -209,10 +209,11 @@ impl Link {
         let judged = if from == self.client {
             self.gate.judge(datagram, (received - start).as_secs_f64())
         } else {
-            Err(Drop::Foreign)
+            Err(DropReason::Foreign)
         };
-        let handed_over = judged
-            .and_then(|correction| self.corrections.push((correction, received)).map_err(|_| Drop::RingFull));
+        let handed_over = judged.and_then(|correction| {
+            self.corrections.push((correction, received)).map_err(|_| DropReason::RingFull)
+        });
         if let Err(reason) = handed_over {
             self.shared.count(reason);
         }

@@ -10,5 +10,5 @@ mod gate;
 mod link;
 mod messages;
 
-pub use gate::{Correction, Drop, EgmGate};
+pub use gate::{Correction, DropReason, EgmGate};
 pub use link::{EgmCounts, EgmSensor, EgmSettings};
