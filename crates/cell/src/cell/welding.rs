@@ -135,6 +135,8 @@ pub struct Weave {
     pub dwell_right: f64,
     /// Tilt of the weaving plane about the travel direction, in radians.
     pub angle: f64,
+    /// How much higher the edges lie than the middle, in metres.
+    pub elevation: f64,
     /// The first swing's side.
     pub first_side: WeaveSide,
 }
@@ -166,6 +168,7 @@ impl Weave {
             dwell_centre: dwell("dwell_centre_s")?,
             dwell_right: dwell("dwell_right_s")?,
             angle: table.number("angle_deg", Unit::Degree, -90.0..=90.0)?,
+            elevation: table.number("elevation_mm", Unit::Milli, -50.0..=50.0)?,
             first_side: table
                 .choice("first_side", &[("left", WeaveSide::Left), ("right", WeaveSide::Right)])?,
         };

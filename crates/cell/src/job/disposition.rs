@@ -85,7 +85,7 @@ const OTHERS: &[(&str, Disposition)] = &[
     ("PRINT", REPORTED),
     ("PSTART", Accepted("there is one task: the other job is not started")),
     ("PWAIT", Accepted("there is one task: nothing to wait for")),
-    ("REFP", Accepted("reference points matter to weaves only")),
+    ("REFP", Accepted("a weave takes its plane from the travel and the wire")),
     ("SET", CELL_DATA),
     ("SETFILE", CELL_DATA),
     ("SETPRM", CELL_DATA),
@@ -167,8 +167,7 @@ fn of_data(data: &Data) -> Disposition {
 
 fn of_weld(weld: &Weld) -> Disposition {
     match weld {
-        Weld::WeaveOn(_) => refused("weaving is not built"),
-        Weld::WeaveOff => Accepted("no weave is on"),
+        Weld::WeaveOn(_) | Weld::WeaveOff => Executed,
         Weld::ArcOn(tags) | Weld::ArcOff(tags) | Weld::ArcSet(tags) if tags.other_tags.is_empty() => Executed,
         Weld::ArcOn(_) | Weld::ArcOff(_) | Weld::ArcSet(_) => {
             Accepted("tags of the power source, such as RETRY, have no effect")

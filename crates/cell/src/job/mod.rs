@@ -56,7 +56,7 @@ pub use program::{Header, Job, JobFile, Statement};
 pub use set::JobSet;
 pub use step::{
     Action, ArcCondition, ArcPart, CircularArc, CurvePiece, LinearSpeedUnit, Location, Move, MovePath, Note,
-    Output, Passage, Speed, SpeedOrigin, SplinePiece, Step, Target, Zone,
+    Output, Passage, Speed, SpeedOrigin, SplinePiece, Step, Target, WeaveCondition, Zone,
 };
 pub use world::World;
 

@@ -47,6 +47,10 @@ pub enum Action {
     ArcOff(ArcCondition),
     /// Change the arc.
     ArcSet(ArcCondition),
+    /// Weave from here on.
+    WeaveOn(WeaveCondition),
+    /// Weave no longer.
+    WeaveOff,
     /// Stand still.
     Dwell {
         /// How long.
@@ -291,6 +295,21 @@ pub struct ArcCondition {
     pub speed_mm_s: Option<f64>,
     /// Number of the power source, from `WELDn`.
     pub power_source: Option<u32>,
+}
+
+/// A weave condition: from the cell, or written, with every value found. What is written goes before the cell's.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct WeaveCondition {
+    /// Number of the cell's condition, WEV.
+    pub file: Option<u32>,
+    /// From the seam to either side, mm.
+    pub amplitude_mm: Option<f64>,
+    /// Hz.
+    pub frequency_hz: Option<f64>,
+    /// Tilt of the weaving plane about the travel, deg.
+    pub angle_deg: Option<f64>,
+    /// The first swing goes to the right.
+    pub right_first: Option<bool>,
 }
 
 /// An output that the job sets.

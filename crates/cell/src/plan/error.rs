@@ -131,6 +131,9 @@ pub enum Problem {
     /// The weld would be slower than programmed, and the cell refuses that.
     #[error("{0}; the cell refuses a slowdown while the arc is on (arc.refuse_slowdown)")]
     WeldSlowdown(String),
+    /// A weave that cannot be, or does not agree with the cell's limits.
+    #[error("{0}")]
+    Weave(String),
     /// The generator gives no motion.
     #[error("no motion to {name}: {reason}")]
     Generator {

@@ -25,6 +25,7 @@ mod speed;
 mod suggest;
 pub mod timing;
 mod tool_path;
+mod weave;
 mod workspace;
 
 pub use arm::{Arm, CellArm, PlanningArm};

@@ -14,10 +14,14 @@ use super::run::{Link, Run, Stops};
 use super::smear::Smear;
 use super::speed;
 use super::tool_path;
+use super::weave::WeaveOrder;
 use super::workspace;
 use crate::cell::Cell;
 use crate::job::{Action, ArcCondition, ArcPart, Frame, Location, Move, MovePath, Step};
 use crate::record::{SegmentInfo, SegmentKind};
+
+/// A weave over more pieces of moves than these ends on the way and begins again.
+const LONGEST_WEAVE: usize = 2000;
 
 /// What a step, or a part of it, becomes. A step without motion has one of these; a move has several where it is handed over in
 /// parts, and one more for the corner at its end.
@@ -69,6 +73,8 @@ pub struct Planner<'a, const N: usize, K> {
     pub(super) joints: [f64; N],
     pub(super) tool: ToolPose,
     pub(super) arc: bool,
+    /// The weave that is on.
+    pub(super) weave: Option<WeaveOrder>,
     segment: u32,
     pub(super) run: Run<N>,
     /// A joint move that waits for the step after it; the run is empty then.
@@ -90,6 +96,7 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             joints,
             tool,
             arc: false,
+            weave: None,
             segment: 0,
             run,
             held: None,
@@ -228,6 +235,8 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         match &step.action {
             Action::ArcOn(condition) => self.arc_on(condition, &mut planned)?,
             Action::ArcOff(condition) => self.arc_off(condition, &mut planned)?,
+            Action::WeaveOn(condition) => self.weave = Some(WeaveOrder::try_new(condition, self.cell)?),
+            Action::WeaveOff => self.weave = None,
             Action::Dwell { seconds } => self.dwell(*seconds, &mut planned),
             Action::Unsupported { text, reason } => {
                 return Err(Problem::Refused { text: text.clone(), reason: reason.clone() });
@@ -339,7 +348,15 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             self.run.begin(&link, &mut self.segment);
         }
         self.waiting.pop_front();
-        if rests { self.end_run(None, out) } else { self.advance(false, out) }
+        if rests {
+            return self.end_run(None, out);
+        }
+        // Where a weave ends must be known before it begins.
+        match &self.weave {
+            Some(_) if self.run.count() < LONGEST_WEAVE => Ok(()),
+            Some(_) => self.end_run(Some(Stops("the weave is long enough")), out),
+            None => self.advance(false, out),
+        }
     }
 
     /// A move to where the run leads already, such as the first MOVC of an arc, does not stop it unless it is to.

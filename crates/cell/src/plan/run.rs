@@ -6,8 +6,10 @@ use std::sync::Arc;
 use seamline::geometry::Pose;
 use seamline::path::corner::Blend;
 use seamline::path::{Measure, Path, TimingPiece};
+use seamline::weave::Weave;
 
 use super::corner::{BLEND_SHARES, SHARE, limits, lost_time, passing};
+use super::error::Problem;
 use super::resolve::Goal;
 use super::route::Route;
 use super::smear::{Cap, Smear};
@@ -26,6 +28,8 @@ const WHOLE: f64 = 2.0;
 const USED: f64 = 1.0 - 1e-5;
 /// Two places of a path nearer than this are one: a nanometre.
 const SAME_PLACE: f64 = 1e-9;
+/// Speeds nearer to each other than this share are one: a weave goes on from one to the other.
+const SAME_SPEED: f64 = 1e-9;
 
 /// A move as programmed.
 #[derive(Debug, Clone)]
@@ -196,6 +200,45 @@ impl<const N: usize> Run<N> {
         if let Some(last) = self.pieces.back_mut() {
             last.after.push(step);
         }
+    }
+
+    /// How many pieces it has.
+    pub(super) fn count(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// Lays weaves over the parts between corners that have one speed each; `of` gives the weave of such a part.
+    ///
+    /// # Errors
+    /// Those of `of`, with the number of the piece that the part begins with.
+    pub(super) fn weave(
+        &mut self,
+        of: impl Fn(&[Piece<N>]) -> Result<Weave, Problem>,
+    ) -> Result<(), (usize, Problem)> {
+        let pieces = self.pieces.make_contiguous();
+        let mut from = 0;
+        while from < pieces.len() {
+            let speed = pieces[from].limits.speed;
+            let goes_on = |piece: &&Piece<N>| {
+                let same = (piece.limits.speed - speed).abs() <= SAME_SPEED * speed;
+                same && !piece.is_corner() && piece.link.travels()
+            };
+            let to = from + pieces[from..].iter().take_while(goes_on).count();
+            let part = &mut pieces[from..to];
+            if part.is_empty() {
+                from += 1;
+                continue;
+            }
+            let weave = of(part).map_err(|problem| (from, problem))?;
+            let mut start = 0.0;
+            for piece in part {
+                let length = piece.path.length();
+                piece.lay(&weave, start);
+                start += length;
+            }
+            from = to;
+        }
+        Ok(())
     }
 
     /// How far the next timing is to look; `None` where more of the run must be known first.
@@ -369,6 +412,12 @@ impl<const N: usize> Piece<N> {
     /// Some of what was handed out is slower than programmed.
     pub(super) fn is_slowed(&self) -> bool {
         self.slowed
+    }
+
+    /// Weaves about it; `start` is the weave's coordinate where it begins.
+    fn lay(&mut self, weave: &Weave, start: f64) {
+        self.path = self.path.woven(weave, start);
+        self.info.kind = SegmentKind::Path(self.link.path.woven(weave, start - self.offset));
     }
 
     /// The corner that this move, which has been cut short for it, ends in. What follows the move follows the corner.

@@ -33,6 +33,13 @@ pub(super) fn check_path(path: &Path, safety: &Safety) -> Result<(), Problem> {
     outside.map_or(Ok(()), |position| Err(problem(safety, &position)))
 }
 
+/// The same with the tool centre point up to `reach` metres beside the path.
+pub(super) fn check_path_with_room(path: &Path, reach: f64, safety: &Safety) -> Result<(), Problem> {
+    let room = Vector3::repeat(reach);
+    let (workspace_min, workspace_max) = (safety.workspace_min + room, safety.workspace_max - room);
+    check_path(path, &Safety { workspace_min, workspace_max })
+}
+
 /// The tool centre point stays in the workspace during a joint move.
 pub(super) fn check_joint_move<const N: usize>(
     trajectory: &Trajectory<N>,

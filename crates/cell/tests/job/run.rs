@@ -2,7 +2,7 @@
 
 use seamline_cell::job::{
     Action, ArcPart, Condition, Coordinates, Frame, JobFile, Location, MAX_CALLS, MAX_IDLE, Move, MovePath,
-    Note, Output, PositionKind, PositionName, SignalKind, Speed, SpeedOrigin, Step, Zone,
+    Note, Output, PositionKind, PositionName, SignalKind, Speed, SpeedOrigin, Step, WeaveCondition, Zone,
 };
 
 use crate::support::{TestWorld, actions, failure, file, messages, other, steps};
@@ -463,9 +463,7 @@ SETUALM 8001 \"STOP\" 7";
 #[test]
 fn what_is_not_executed_is_reported_or_refused_with_its_line() {
     let program = "REFP 1
-WVON WEV#(1)
-MVOL C00001 V=1.0
-WVOF";
+MVOL C00001 V=1.0";
     let (taken, error) = steps(vec![file(program)], &mut TestWorld::default(), 100);
     assert_eq!(error, None);
     let short = |step: &Step| match &step.action {
@@ -477,11 +475,9 @@ WVOF";
     assert_eq!(
         seen,
         [
-            "TEST line 33 REFP 1: reference points matter to weaves only",
-            "TEST line 34 WVON WEV#(1)! weaving is not built",
-            "TEST line 35 MVOL C00001 V=1.0! this instruction is not known; did you mean `MOVL`?",
-            "TEST line 36 WVOF: no weave is on",
-            "TEST line 37 End",
+            "TEST line 33 REFP 1: a weave takes its plane from the travel and the wire",
+            "TEST line 34 MVOL C00001 V=1.0! this instruction is not known; did you mean `MOVL`?",
+            "TEST line 35 End",
         ]
     );
 }
@@ -497,6 +493,20 @@ fn arc_conditions_carry_their_values() {
     assert!(matches!(all[1], Action::ArcSet(c) if c.current == Some(250.0)));
     assert!(matches!(all[2], Action::ArcOff(c) if c.file == Some(2)));
     assert!(matches!(all[3], Action::ArcOn(c) if c.file == Some(951) && c.power_source == Some(2)));
+}
+
+#[test]
+fn weave_conditions_carry_their_values() {
+    let all = actions("WVON WEV#(25)\nWVON RB1 AMP=5.0 FREQ=3.0 ANGL=45 DIR=1\nWVOF");
+    let written = WeaveCondition {
+        file: None,
+        amplitude_mm: Some(5.0),
+        frequency_hz: Some(3.0),
+        angle_deg: Some(45.0),
+        right_first: Some(true),
+    };
+    let file = WeaveCondition { file: Some(25), ..WeaveCondition::default() };
+    assert_eq!(all[..3], [Action::WeaveOn(file), Action::WeaveOn(written), Action::WeaveOff]);
 }
 
 #[test]

@@ -18,4 +18,5 @@ mod no_alloc;
 mod pause;
 mod prefilter;
 mod recorded;
+mod weave;
 mod weld;

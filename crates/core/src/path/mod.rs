@@ -147,6 +147,12 @@ impl Path {
         Self { weave: Some(PathWeave { weave: *weave, start }), ..*self }
     }
 
+    /// Whether a weave goes about it.
+    #[must_use]
+    pub fn is_woven(&self) -> bool {
+        self.weave.is_some()
+    }
+
     /// The same way of the tool centre point with the tool turned by a constant rotation in its own frame.
     #[must_use]
     pub fn tilted(&self, tilt: &Rotation) -> Self {

@@ -21,7 +21,7 @@ use self::variables::{Value, Variables};
 use super::disposition::{Disposition, disposition};
 use super::error::{JobError, Mistake};
 use super::expression::VariableKind;
-use super::instruction::{Instruction, Interpolation, Weld};
+use super::instruction::{Instruction, Interpolation};
 use super::lexer::Fault;
 use super::position::PositionKind;
 use super::program::{Job, Statement};
@@ -237,7 +237,7 @@ fn location(job: &Job, statement: &Statement) -> Location {
 
 /// Accepted without anything to execute.
 fn is_reported_only(instruction: &Instruction) -> bool {
-    matches!(instruction, Instruction::Other { .. } | Instruction::Weld(Weld::WeaveOff))
+    matches!(instruction, Instruction::Other { .. })
 }
 
 /// Whether the world moves on while this is done. A wait whose condition holds already does not.

@@ -1,9 +1,9 @@
 //! Inputs, outputs, time, messages; arc and weave.
 
 use super::super::expression::{Expression, Node};
-use super::super::instruction::{ArcTags, Io, OutputValue, Weld};
+use super::super::instruction::{ArcTags, Io, OutputValue, WeaveTags, Weld};
 use super::super::lexer::Fault;
-use super::super::step::{Action, ArcCondition, Output};
+use super::super::step::{Action, ArcCondition, Output, WeaveCondition};
 use super::super::world::World;
 use super::evaluate::Signals;
 use super::moves::in_range;
@@ -94,10 +94,24 @@ impl Interpreter {
                 self.arc = None;
                 Action::ArcOff(self.arc_condition(tags, world)?)
             }
-            // The table of dispositions lets neither come here.
-            Weld::WeaveOn(_) | Weld::WeaveOff => return Ok(Outcome::Nothing),
+            Weld::WeaveOn(tags) => Action::WeaveOn(self.weave_condition(tags, world)?),
+            Weld::WeaveOff => Action::WeaveOff,
         };
         Ok(action.into())
+    }
+
+    fn weave_condition(&self, tags: &WeaveTags, world: &mut impl World) -> Run<WeaveCondition> {
+        let value = |tag: &Option<Expression>, counts_per_unit: f64, world: &mut _| {
+            tag.as_ref().map(|e| self.counted(e, counts_per_unit, world)).transpose()
+        };
+        let file = tags.file.as_ref();
+        Ok(WeaveCondition {
+            file: file.map(|f| self.natural(f, "the condition's number", MAX_NUMBER, world)).transpose()?,
+            amplitude_mm: value(&tags.amplitude, 10.0, world)?,
+            frequency_hz: value(&tags.frequency, 10.0, world)?,
+            angle_deg: value(&tags.angle, 10.0, world)?,
+            right_first: value(&tags.direction, 1.0, world)?.map(|direction| direction > 0.0),
+        })
     }
 
     fn arc_condition(&self, tags: &ArcTags, world: &mut impl World) -> Run<ArcCondition> {

@@ -10,11 +10,18 @@ use seamline::path::{Arc, Curve, Measure, Orientation, Path};
 pub(super) struct Deviation {
     /// Path coordinate of the nearest point: metres, or radians for a turn on the spot.
     pub(super) s: f64,
-    /// Distance from the curve, in metres.
+    /// The pose's position without the weave: where it stands at the seam.
+    pub(super) seam: Vector3,
+    /// Distance from the curve with its weave, in metres.
     pub(super) distance: f64,
     /// Angle from the programmed orientation at `s`, in radians.
     pub(super) angle: f64,
 }
+
+/// Steps of the search for the nearest point of a woven path; between two cycles it takes two or three.
+const STEPS: usize = 20;
+/// Steps shorter than this end it: a picometre.
+const SAME_PLACE: f64 = 1e-12;
 
 /// A path prepared for the question.
 #[derive(Debug, Clone, Copy)]
@@ -32,7 +39,13 @@ impl Programmed {
         Self { path: *path, start, turn }
     }
 
-    pub(super) fn deviation(&self, pose: &Pose) -> Deviation {
+    /// Whether a weave goes about it.
+    pub(super) fn is_woven(&self) -> bool {
+        self.path.is_woven()
+    }
+
+    /// `last_s` is the coordinate of the last question: a woven path may come near to a pose several times. NaN where there was none.
+    pub(super) fn deviation(&self, pose: &Pose, last_s: f64) -> Deviation {
         let position = pose.translation.vector;
         let (on_curve, distance) = match self.path.curve() {
             Curve::Line { start, direction, length } => from_line(&position, start, direction, *length),
@@ -44,7 +57,30 @@ impl Programmed {
             Measure::Length => on_curve,
             Measure::Angle => nearest_turn(&turned, &self.turn),
         };
-        Deviation { s, distance, angle: (turned * self.programmed(s).inverse()).angle() }
+        let (s, seam, distance) = if self.path.is_woven() {
+            self.from_weave(&position, if last_s.is_nan() { s } else { last_s })
+        } else {
+            (s, position, distance)
+        };
+        Deviation { s, seam, distance, angle: (turned * self.programmed(s).inverse()).angle() }
+    }
+
+    /// The nearest point of the woven path, found by Gauss and Newton's method from a place near to it: its coordinate, the position without the
+    /// weave there, and the distance.
+    fn from_weave(&self, position: &Vector3, near: f64) -> (f64, Vector3, f64) {
+        let mut s = near;
+        for _ in 0..STEPS {
+            let jet = self.path.jet(s);
+            let (off, along) = (position - jet.pose.translation.vector, jet.linear[0]);
+            let next = (s + off.dot(&along) / along.norm_squared()).clamp(0.0, self.path.length());
+            let step = next - s;
+            s = next;
+            if step.abs() < SAME_PLACE {
+                break;
+            }
+        }
+        let off = position - self.path.pose(s).translation.vector;
+        (s, self.path.seam_jet(s).pose.translation.vector + off, off.norm())
     }
 
     /// The programmed turn from the start: the geodesic, or what the path has through its via point.
@@ -141,7 +177,7 @@ mod tests {
                 (jet.pose.translation.vector + sideways * distance).into(),
                 Rotation::from_scaled_axis(axis * angle) * jet.pose.rotation,
             );
-            let found = Programmed::new(&path).deviation(&tilted);
+            let found = Programmed::new(&path).deviation(&tilted, f64::NAN);
             assert!((found.s - s).abs() < 1e-9, "case {case}: {} for {s}", found.s);
             assert!((found.distance - distance).abs() < 1e-12, "case {case}");
             assert!((found.angle - angle).abs() < 1e-9, "case {case}: {} for {angle}", found.angle);
@@ -153,12 +189,12 @@ mod tests {
     fn overshoot_counts() {
         let at = |x: f64, y: f64| Pose::translation(x, y, 0.0);
         let line = Programmed::new(&Path::line(&at(0.0, 0.0), &at(1.0, 0.0)));
-        assert_eq!(line.deviation(&at(1.5, 0.0)).distance, 0.5);
-        assert_eq!(line.deviation(&at(-0.25, 0.0)).distance, 0.25);
+        assert_eq!(line.deviation(&at(1.5, 0.0), f64::NAN).distance, 0.5);
+        assert_eq!(line.deviation(&at(-0.25, 0.0), f64::NAN).distance, 0.25);
         let side = std::f64::consts::FRAC_1_SQRT_2;
         let arc = Programmed::new(&Path::arc(&at(1.0, 0.0), &at(side, side), &at(0.0, 1.0)).unwrap());
-        assert!((arc.deviation(&at(1.0, -0.1)).distance - 0.1).abs() < 1e-2);
-        assert_eq!(arc.deviation(&at(1.0, -0.1)).s, 0.0);
-        assert!((arc.deviation(&at(-0.1, 1.0)).s - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+        assert!((arc.deviation(&at(1.0, -0.1), f64::NAN).distance - 0.1).abs() < 1e-2);
+        assert_eq!(arc.deviation(&at(1.0, -0.1), f64::NAN).s, 0.0);
+        assert!((arc.deviation(&at(-0.1, 1.0), f64::NAN).s - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
     }
 }

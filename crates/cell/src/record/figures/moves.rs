@@ -116,6 +116,8 @@ struct Current {
     speed_error: f64,
     /// Path coordinate of the last sample.
     last_s: f64,
+    /// Where the last sample stood at the seam.
+    last_seam: Vector3,
 }
 
 /// While the override changes, and in a pause, the speed is neither the job's nor a mistake.
@@ -201,6 +203,7 @@ impl Current {
             speed: None,
             speed_error: 0.0,
             last_s: f64::NAN,
+            last_seam: Vector3::zeros(),
         }
     }
 
@@ -214,7 +217,7 @@ impl Current {
             }
         }
         let Some(programmed) = &self.programmed else { return f64::NAN };
-        let Deviation { s, distance, angle } = programmed.deviation(&sample.tcp);
+        let Deviation { s, seam, distance, angle } = programmed.deviation(&sample.tcp, self.last_s);
         let [from, to] = self.info.rounded;
         if from <= s && s <= self.length - to {
             let [most, turn] = self.off.unwrap_or_default();
@@ -222,11 +225,15 @@ impl Current {
         }
         // Both ends of the cycle must lie in the constant part, of this segment.
         let last_s = std::mem::replace(&mut self.last_s, s);
+        let last_seam = std::mem::replace(&mut self.last_seam, seam);
         let constant = self.info.constant_part.is_some_and(|[from, to]| from <= last_s && s <= to);
         if let (true, Some(before), Some(speed_programmed)) = (constant, before, self.info.speed)
             && sample.mode == Mode::Running
             && before.segment == sample.segment
         {
+            // A weave is judged by the speed of its travel.
+            let travel = (seam - last_seam).norm() / (sample.time - before.time);
+            let speed = if programmed.is_woven() { travel } else { speed };
             let expected = speed_programmed * 0.5 * (before.override_rate + sample.override_rate);
             self.speed_error = self.speed_error.max((speed - expected).abs() / speed_programmed);
             if is_steady(sample, Some(before)) {
