@@ -56,6 +56,27 @@ fn the_main_job_leaves_its_three_files() {
     assert!(report.contains("FILLET") && !report.contains("src=\"http"));
 }
 
+/// The example's first leg, a line along y at x = 1100 mm and z = −50 mm that goes on over the point between its two moves: the torch swings by the
+/// 2 mm of the condition, and is held against the woven path.
+#[test]
+fn the_weaving_example_swings_by_its_amplitude() {
+    let (out, summary) = run_example("weave", &[]);
+    assert_eq!(summary["verdict"], "ok");
+    let recording = fs::read_to_string(out.join("recording.csv")).expect("a recording");
+    let header: Vec<&str> = recording.lines().next().expect("a header").split(',').collect();
+    let column = |name: &str| header.iter().position(|word| *word == name).expect("a column");
+    let [line, x, y, z] = ["line", "tcp_x_mm", "tcp_y_mm", "tcp_z_mm"].map(column);
+    let mut swings = [0.0_f64; 2];
+    for row in recording.lines().skip(1) {
+        let value = |at: usize| row.split(',').nth(at).and_then(|word| word.parse().ok()).unwrap_or(f64::NAN);
+        let half = usize::from(value(y) > 0.0);
+        if [34.0, 35.0].contains(&value(line)) && (-90.0..110.0).contains(&value(y)) {
+            swings[half] = swings[half].max((value(x) - 1100.0).hypot(value(z) + 50.0));
+        }
+    }
+    assert!(swings.iter().all(|swing| (swing - 2.0).abs() < 0.02), "{swings:?}");
+}
+
 #[test]
 fn override_changes_time_and_not_the_path() {
     let (full, half) = (run_example("near_wrist", &[]).1, run_example("near_wrist", &["--override", "50"]).1);

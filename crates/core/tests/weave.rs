@@ -72,7 +72,7 @@ fn peaks_are_bounds_and_are_reached() {
     let short = |shape: WeaveShape| (shape, 0.015);
     for (shape, to) in shapes().into_iter().flat_map(|shape| [long(shape), short(shape)]) {
         let (weave, speed) = (Weave::try_new(&shape, 0.01, to).unwrap(), 0.012);
-        let peaks = weave.peaks(speed);
+        let peaks = weave.peaks(speed, 0.0);
         let mut seen = [0.0_f64; 3];
         for k in 0..200_000 {
             let offset = weave.offset(0.1 * f64::from(k) / 200_000.0);
@@ -89,10 +89,52 @@ fn peaks_are_bounds_and_are_reached() {
     }
 }
 
+/// On arcs of small radius, to either side and with the tool turning, what the weave adds to the seam's motion stays within the peaks of that
+/// turn; a circle that turns with the arc passes those of a straight seam.
+#[test]
+fn peaks_take_the_bend_into_account() {
+    let (speed, mut beyond) = (0.02_f64, 0);
+    for shape in shapes() {
+        for (side, turn) in [(1.0, 0.0), (-1.0, 0.0), (1.0, 0.8), (-1.0, -0.8)] {
+            let at = |angle: f64| {
+                let (sin, cos) = angle.sin_cos();
+                Pose::new(
+                    Vector3::new(5e-3 * sin, side * 5e-3 * (1.0 - cos), 0.3),
+                    Vector3::new(std::f64::consts::PI, turn * angle, 0.0),
+                )
+            };
+            let path = Path::arc(&at(0.0), &at(2.0), &at(4.0)).unwrap();
+            let weave = Weave::try_new(&shape, 0.0, path.length()).unwrap();
+            let woven = path.woven(&weave, 0.0);
+            let (mut seen, mut rate) = ([0.0_f64; 3], 0.0_f64);
+            for k in 0..=4_000 {
+                let s = path.length() * f64::from(k) / 4_000.0;
+                let (woven, seam) = (woven.jet(s), path.jet(s));
+                rate = rate.max(SeamFrame::turn_rate(&seam).unwrap());
+                for (order, seen) in seen.iter_mut().enumerate() {
+                    let added = (woven.linear[order] - seam.linear[order]).norm();
+                    *seen = seen.max(added * speed.powi(order as i32 + 1));
+                }
+            }
+            assert!(turn != 0.0 || (rate - 200.0).abs() < 1e-6, "{rate}");
+            let of = |rate: f64| {
+                let peaks = weave.peaks(speed, rate);
+                [peaks.velocity, peaks.acceleration, peaks.jerk]
+            };
+            let (straight, turning) = (of(0.0), of(rate));
+            for order in 0..3 {
+                assert!(seen[order] <= turning[order], "{shape:?}, {side}, {turn}: order {order}");
+                beyond += usize::from(seen[order] > straight[order]);
+            }
+        }
+    }
+    assert!(beyond >= 6, "{beyond}");
+}
+
 #[test]
 fn a_sine_asks_for_the_jerk_of_a_sine() {
     // 2 mm at 3 Hz.
-    let peaks = weave(&PLAIN).peaks(0.012);
+    let peaks = weave(&PLAIN).peaks(0.012, 0.0);
     let omega = std::f64::consts::TAU * 3.0;
     assert!((peaks.jerk - 1.1 * 2e-3 * omega.powi(3)).abs() < 1e-9);
 }

@@ -46,7 +46,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let last = self.held.as_ref().map(|held| (&held.step, held.pass)).or(of_run);
         let passed = last.filter(|(_, pass)| pass.is_some()).map(|(step, _)| step.clone());
         self.end_joint_move(out);
-        self.weave_run()?;
+        self.weave_run(out)?;
         self.advance(true, out)?;
         if let (Some(Stops(why)), Some(Step { at, action: Action::Move(r#move), .. })) = (stop, passed) {
             let text = format!("the robot stops exactly on this point ({}): {why}", r#move.zone);

@@ -17,6 +17,8 @@ use crate::record::{SegmentInfo, SegmentKind};
 /// Why the robot stops before a joint move.
 const BEFORE_JOINT_MOVE: &str = "a joint move follows";
 
+const NOT_WOVEN: &str = "MOVJ goes without weave: that is along MOVL and MOVC";
+
 /// A joint move that is planned and not handed out.
 #[derive(Debug, Clone)]
 pub(super) struct JointMove<const N: usize> {
@@ -31,6 +33,8 @@ pub(super) struct JointMove<const N: usize> {
     /// What is left of it beside the corner at its beginning.
     pub(super) motion: TrajectoryMotion<N>,
     from_rest: bool,
+    /// What the operator should know.
+    notice: Option<&'static str>,
     /// Steps that take no time, done when the move is.
     pub(super) after: Vec<Step>,
 }
@@ -59,7 +63,8 @@ impl<const N: usize> JointMove<N> {
             motion: Motion::Joint(motion),
         };
         let begins = matches!(info.kind, SegmentKind::Joint);
-        let part = if begins { Planned::of(&self.step) } else { Planned::part(&self.step.at) };
+        let mut part = if begins { Planned::of(&self.step) } else { Planned::part(&self.step.at) };
+        part.notices.extend(self.notice.filter(|_| begins).map(String::from));
         Planned {
             commands: vec![Command::Move(block)],
             segment: Some(info),
@@ -180,6 +185,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             limits: input.limits,
             motion: TrajectoryMotion::whole(trajectory),
             from_rest: true,
+            notice: self.weave.as_ref().map(|_| NOT_WOVEN),
             after: Vec::new(),
         })
     }

@@ -83,6 +83,12 @@ impl Route {
         self.paths.first().map_or(Measure::Length, Path::measure)
     }
 
+    /// The same way without weaves.
+    #[must_use]
+    pub fn seam(&self) -> Self {
+        Self { paths: self.paths.iter().map(Path::seam).collect(), ends: self.ends.clone() }
+    }
+
     /// The same way with the tool turned by a constant rotation in its own frame.
     #[must_use]
     pub fn tilted(&self, tilt: &Rotation) -> Self {

@@ -9,7 +9,6 @@ use seamline::path::{Measure, Path, TimingPiece};
 use seamline::weave::Weave;
 
 use super::corner::{BLEND_SHARES, SHARE, limits, lost_time, passing};
-use super::error::Problem;
 use super::resolve::Goal;
 use super::route::Route;
 use super::smear::{Cap, Smear};
@@ -28,8 +27,6 @@ const WHOLE: f64 = 2.0;
 const USED: f64 = 1.0 - 1e-5;
 /// Two places of a path nearer than this are one: a nanometre.
 const SAME_PLACE: f64 = 1e-9;
-/// Speeds nearer to each other than this share are one: a weave goes on from one to the other.
-const SAME_SPEED: f64 = 1e-9;
 
 /// A move as programmed.
 #[derive(Debug, Clone)]
@@ -207,38 +204,9 @@ impl<const N: usize> Run<N> {
         self.pieces.len()
     }
 
-    /// Lays weaves over the parts between corners that have one speed each; `of` gives the weave of such a part.
-    ///
-    /// # Errors
-    /// Those of `of`, with the number of the piece that the part begins with.
-    pub(super) fn weave(
-        &mut self,
-        of: impl Fn(&[Piece<N>]) -> Result<Weave, Problem>,
-    ) -> Result<(), (usize, Problem)> {
-        let pieces = self.pieces.make_contiguous();
-        let mut from = 0;
-        while from < pieces.len() {
-            let speed = pieces[from].limits.speed;
-            let goes_on = |piece: &&Piece<N>| {
-                let same = (piece.limits.speed - speed).abs() <= SAME_SPEED * speed;
-                same && !piece.is_corner() && piece.link.travels()
-            };
-            let to = from + pieces[from..].iter().take_while(goes_on).count();
-            let part = &mut pieces[from..to];
-            if part.is_empty() {
-                from += 1;
-                continue;
-            }
-            let weave = of(part).map_err(|problem| (from, problem))?;
-            let mut start = 0.0;
-            for piece in part {
-                let length = piece.path.length();
-                piece.lay(&weave, start);
-                start += length;
-            }
-            from = to;
-        }
-        Ok(())
+    /// All of it.
+    pub(super) fn pieces(&mut self) -> &mut [Piece<N>] {
+        self.pieces.make_contiguous()
     }
 
     /// How far the next timing is to look; `None` where more of the run must be known first.
@@ -415,9 +383,12 @@ impl<const N: usize> Piece<N> {
     }
 
     /// Weaves about it; `start` is the weave's coordinate where it begins.
-    fn lay(&mut self, weave: &Weave, start: f64) {
+    pub(super) fn lay(&mut self, weave: &Weave, start: f64) {
         self.path = self.path.woven(weave, start);
-        self.info.kind = SegmentKind::Path(self.link.path.woven(weave, start - self.offset));
+        match &mut self.info.kind {
+            SegmentKind::Corner { path, .. } => *path = Some(self.path),
+            kind => *kind = SegmentKind::Path(self.link.path.woven(weave, start - self.offset)),
+        }
     }
 
     /// The corner that this move, which has been cut short for it, ends in. What follows the move follows the corner.

@@ -244,9 +244,21 @@ pub(super) fn off_weld<const N: usize>(piece: &Piece<N>) -> Option<String> {
         .then(|| format!("the prefilter takes the tool up to {off:.3} mm off this path"))
 }
 
-/// What a motion is held against when it comes out of the prefilters: the programmed speed is there only once all that is inside has it.
+/// What a motion is held against when it comes out of the prefilters: the programmed speed is there only once all that is inside has it. What
+/// they leave of a weave is no longer a function of the path: a woven move has no figures, and past a woven corner the weave may lead as far aside
+/// as it reaches.
 pub(super) fn lagging(info: &SegmentInfo, smear: Option<&Smear>) -> SegmentInfo {
     let Some((smear, speed)) = smear.zip(info.speed) else { return *info };
+    if let Some((path, weave)) = info.kind.path().and_then(|path| Some((path, path.weave()?))) {
+        let rounded = [path.length(); 2];
+        let kind = match info.kind {
+            SegmentKind::Corner { corner, permitted, .. } => {
+                SegmentKind::Corner { path: Some(path.seam()), corner, permitted: permitted + weave.reach() }
+            }
+            kind => kind,
+        };
+        return SegmentInfo { kind, rounded, constant_part: None, ..*info };
+    }
     let (enter, leave) = (speed * (smear.length - smear.delay), speed * smear.delay);
     let constant_part = info.constant_part.map(|[from, to]| [from + enter, to - leave]);
     SegmentInfo { constant_part: constant_part.filter(|[from, to]| from < to), ..*info }
@@ -259,6 +271,8 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let Some(smear) = self.run.smear else { return Vec::new() };
         let (fastest, reach, hardest) = (self.run.fastest(), self.run.reach(), self.run.hardest());
         let mut caps = std::mem::take(&mut self.run.caps);
+        // A weave is damped, which is said where it is laid; it is no error of the seam's.
+        let seam = &ahead.seam();
         let (mut bends, mut corners) = (Vec::new(), Vec::new());
         for (index, (from, piece)) in self.run.placed().enumerate() {
             let length = piece.path.length().min(ahead.length() - from);
@@ -273,8 +287,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
                 let blend = [from, from + length];
                 // What lies on either side of it must be in sight; then its cap stays.
                 if piece.cap.is_none() && from < to + reach {
-                    let passing =
-                        Passing { route: ahead, blend, corner, permitted, limits: hardest, fastest };
+                    let passing = Passing { route: seam, blend, corner, permitted, limits: hardest, fastest };
                     let mut greatest = |places: &mut dyn Iterator<Item = f64>| {
                         let bends = places.filter_map(|s| bend(s, &of_path(ahead, s)));
                         bends.fold(Bend::default(), Bend::greater)
@@ -290,7 +303,8 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             }
             for s in places(&piece.link.path, piece.offset, piece.offset + length) {
                 let place = from + s - piece.offset;
-                let Some(bend) = bend(place, &[Vector3::zeros(); 2]) else { continue };
+                let [[woven, _], [straight, _]] = [ahead, seam].map(|route| of_path(route, place));
+                let Some(bend) = bend(place, &[woven - straight, Vector3::zeros()]) else { continue };
                 caps.push(smear.cap(place, stepped(smear.speed(&bend, smear.path_error))));
                 if place < to {
                     bends.push((index, place, bend, piece.limits.speed));

@@ -17,12 +17,13 @@ use crate::bench::{
 /// Joints in which the tool is at home in front of the robot.
 pub(crate) const HOME: [f64; 6] = [0.0, 0.2, -0.2, 0.1, -1.2, 0.3];
 
+#[derive(Clone)]
 pub(crate) struct Way {
-    cell: Cell,
+    pub(crate) cell: Cell,
     pub(crate) arm: Ar2010,
     /// The taught poses, the start first.
     pub(crate) poses: Vec<Isometry3<f64>>,
-    joints: Vec<[f64; 6]>,
+    pub(crate) joints: Vec<[f64; 6]>,
 }
 
 impl Way {
@@ -75,7 +76,7 @@ impl Way {
 
 pub(crate) struct Trace {
     pub(crate) tools: Vec<Isometry3<f64>>,
-    segments: Vec<u32>,
+    pub(crate) segments: Vec<u32>,
 }
 
 impl Trace {

@@ -114,11 +114,11 @@ impl Track {
 }
 
 /// A weld under way, with what has been seen of it.
-struct Ride {
-    bench: Box<Bench>,
+pub(crate) struct Ride {
+    pub(crate) bench: Box<Bench>,
     near: usize,
-    way: f64,
-    rows: Vec<[f64; 6]>,
+    pub(crate) way: f64,
+    pub(crate) rows: Vec<[f64; 6]>,
     /// Furthest place at which the arc has burned.
     burned: f64,
 }
@@ -132,7 +132,7 @@ impl Ride {
         self.bench.input.arc_burning == Some(true)
     }
 
-    fn cycle(&mut self, track: Option<&Track>) -> CycleOutput<6> {
+    pub(crate) fn cycle(&mut self, track: Option<&Track>) -> CycleOutput<6> {
         let output = self.bench.cycle();
         self.rows.push(output.command.position);
         if let Some(track) = track {
@@ -146,7 +146,7 @@ impl Ride {
         output
     }
 
-    fn until(
+    pub(crate) fn until(
         &mut self,
         track: &Track,
         cycles: usize,
@@ -161,14 +161,14 @@ impl Ride {
         panic!("{cycles} cycles are not enough: {:?} at {} m", self.bench.cycle.mode(), self.way);
     }
 
-    fn ask(&mut self, track: &Track, event: Event) -> CycleOutput<6> {
+    pub(crate) fn ask(&mut self, track: &Track, event: Event) -> CycleOutput<6> {
         self.bench.input.event = Some(event);
         let output = self.cycle(Some(track));
         assert_eq!(output.status.refused, None, "{event:?}");
         output
     }
 
-    fn assert_within_limits(&self, arm: &Ar2010) {
+    pub(crate) fn assert_within_limits(&self, arm: &Ar2010) {
         let shares = worst_shares(&self.rows, arm, self.bench.period);
         assert!(shares[0] <= 1.0 && shares[1] <= 1.001 && shares[2] <= 1.01, "{shares:?}");
     }
@@ -196,7 +196,7 @@ pub(crate) fn track(bench: &Bench) -> Track {
 }
 
 /// The weld at instants from a seed, as many as asked for.
-fn at_random_instants(
+pub(crate) fn at_random_instants(
     bench: &Bench,
     track: &Track,
     random: &mut Random,
@@ -219,7 +219,7 @@ fn at_random_instants(
 
 /// From the rest of an interruption on: the word to go on, and so far that its place is behind. With the arc out in between, gives by how
 /// much the new bead overlaps the old one.
-fn go_on(ride: &mut Ride, track: &Track, event: Event) -> Option<f64> {
+pub(crate) fn go_on(ride: &mut Ride, track: &Track, event: Event) -> Option<f64> {
     let (burned, stopped) = (ride.burned, ride.way);
     ride.ask(track, event);
     let mut lit = None;

@@ -147,10 +147,22 @@ impl Path {
         Self { weave: Some(PathWeave { weave: *weave, start }), ..*self }
     }
 
+    /// The same path without a weave.
+    #[must_use]
+    pub fn seam(&self) -> Self {
+        Self { weave: None, ..*self }
+    }
+
     /// Whether a weave goes about it.
     #[must_use]
     pub fn is_woven(&self) -> bool {
         self.weave.is_some()
+    }
+
+    /// The weave about it.
+    #[must_use]
+    pub fn weave(&self) -> Option<&Weave> {
+        self.weave.as_ref().map(|on| &on.weave)
     }
 
     /// The same way of the tool centre point with the tool turned by a constant rotation in its own frame.

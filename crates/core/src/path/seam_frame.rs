@@ -28,6 +28,19 @@ impl SeamFrame {
         Some(Self { x, y, z: x.cross(&y) })
     }
 
+    /// How fast the frame of a motion along a seam turns, in radians per unit of the motion's parameter: with the seam's bend, and about the
+    /// travel with the wire. `None` where there is no frame.
+    #[must_use]
+    pub fn turn_rate(seam: &PoseJet) -> Option<f64> {
+        Self::of(seam)?;
+        let turned = axes(seam).map(|axis| {
+            let derivatives = axis.map(|part| part.derivatives());
+            let of_order = |order: usize| Vector3::from_fn(|k, _| derivatives[k][order]);
+            Vector3::from_fn(|k, _| axis[k].value()).cross(&of_order(0))
+        });
+        Some(0.5 * (turned[0] + turned[1] + turned[2]).norm())
+    }
+
     /// A vector in the seam's parent frame by its parts.
     #[must_use]
     pub fn vector(&self, [x, y, z]: [f64; 3]) -> Vector3 {
@@ -46,11 +59,7 @@ pub fn displaced(seam: &PoseJet, offset: &[Taylor; 3]) -> PoseJet {
         return *seam;
     }
     let [p1, p2, p3] = seam.linear;
-    // A circle's fourth derivative; along a line there is none.
-    let p4 = p2 * (-p2.norm_squared());
-    let x = unit(&series(&p1, &p2, &p3, &p4));
-    let y = unit(&cross(&x, &turning(seam)));
-    let z = cross(&x, &y);
+    let [x, y, z] = axes(seam);
     let part = |k: usize| x[k] * offset[0] + y[k] * offset[1] + z[k] * offset[2];
     let parts = [part(0), part(1), part(2)];
     let derivatives = parts.map(|part| part.derivatives());
@@ -59,6 +68,16 @@ pub fn displaced(seam: &PoseJet, offset: &[Taylor; 3]) -> PoseJet {
     jet.pose.translation.vector += Vector3::from_fn(|axis, _| parts[axis].value());
     jet.linear = [p1 + of_order(0), p2 + of_order(1), p3 + of_order(2)];
     jet
+}
+
+/// The frame's axes with their derivatives.
+fn axes(seam: &PoseJet) -> [[Taylor; 3]; 3] {
+    let [p1, p2, p3] = seam.linear;
+    // A circle's fourth derivative; along a line there is none.
+    let p4 = p2 * (-p2.norm_squared());
+    let x = unit(&series(&p1, &p2, &p3, &p4));
+    let y = unit(&cross(&x, &turning(seam)));
+    [x, y, cross(&x, &y)]
 }
 
 /// The tool's z axis as it turns.

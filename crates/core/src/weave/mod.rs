@@ -56,6 +56,8 @@ pub struct Weave {
     tilt: (f64, f64),
     from: f64,
     to: f64,
+    /// Where in the pattern it begins, in periods.
+    phase: f64,
     /// Length of each ramp, in metres.
     ramp: f64,
     /// Share of the amplitude that a short part leaves.
@@ -88,7 +90,13 @@ impl Weave {
         let full = RAMP_PERIODS * shape.wavelength;
         let ramp = full.min(0.5 * (to - from));
         let width = (ramp / full) * (ramp / full) * (ramp / full);
-        Ok(Self { shape: *shape, period, tilt: sin_cos(shape.tilt), from, to, ramp, width })
+        Ok(Self { shape: *shape, period, tilt: sin_cos(shape.tilt), from, to, phase: 0.0, ramp, width })
+    }
+
+    /// The same weave, so many periods further on in its pattern: where one goes on that was interrupted.
+    #[must_use]
+    pub fn at_phase(self, periods: f64) -> Self {
+        Self { phase: periods, ..self }
     }
 
     /// The offset from the seam at coordinate `s` in metres, with its derivatives along s: (along the travel, to the left, out of
@@ -99,7 +107,7 @@ impl Weave {
             return [Taylor::constant(0.0); 3];
         }
         let WeaveShape { amplitude, wavelength, elevation, right_first, .. } = self.shape;
-        let place = (s - self.from) / wavelength;
+        let place = self.phase + (s - self.from) / wavelength;
         let [along, across] = self.period.at(place).map(|part| part.stretched(wavelength));
         let across = if right_first { -across } else { across };
         let width = self.width_at(s);
@@ -109,9 +117,10 @@ impl Weave {
         [along * amplitude * width, across * cos, across * sin + lift]
     }
 
-    /// Bounds on what the weave asks of the tool at a travel speed in m/s, ramps included.
+    /// Bounds on what the weave asks of the tool at a travel speed in m/s, ramps included, where its frame turns by so many radians a metre
+    /// ([`crate::path::SeamFrame::turn_rate`]; 1/radius on an arc): what the frame's turning adds is that of a steady turn.
     #[must_use]
-    pub fn peaks(&self, speed: f64) -> WeavePeaks {
+    pub fn peaks(&self, speed: f64, turn_rate: f64) -> WeavePeaks {
         let frequency = speed / self.shape.wavelength;
         let [p1, p2, p3] = self.period.peaks();
         // Of the edges' height, which goes with the square of the way across.
@@ -120,11 +129,30 @@ impl Weave {
         let peak = |order: usize, across: f64| {
             RAMP_ADDS[order] * hypot(amplitude * across, elevation * lifted[order])
         };
+        let offset = self.reach();
+        let d1 = peak(0, p1) * frequency;
+        let d2 = peak(1, p2) * frequency * frequency;
+        let d3 = peak(2, p3) * frequency * frequency * frequency;
+        // (d/dt + Ω×)ⁿ of the offset. Across the seam only, along n, the parts with Ω × n are at right angles to those with n and Ω × (Ω × n).
+        let turn = speed * turn_rate;
+        let with = |parts: [f64; 2]| {
+            if self.period.is_across() && elevation == 0.0 {
+                hypot(parts[0], parts[1])
+            } else {
+                parts[0] + parts[1]
+            }
+        };
         WeavePeaks {
-            velocity: peak(0, p1) * frequency,
-            acceleration: peak(1, p2) * frequency * frequency,
-            jerk: peak(2, p3) * frequency * frequency * frequency,
+            velocity: with([d1, turn * offset]),
+            acceleration: with([d2 + turn * turn * offset, turn * 2.0 * d1]),
+            jerk: with([d3 + turn * turn * 3.0 * d1, turn * (3.0 * d2 + turn * turn * offset)]),
         }
+    }
+
+    /// How far the torch may be from the seam, in metres.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        hypot(self.shape.amplitude, self.shape.elevation)
     }
 
     /// From where to where it leads.

@@ -97,6 +97,14 @@ impl Period {
         }
     }
 
+    /// It has no part along the travel.
+    pub(super) fn is_across(&self) -> bool {
+        match self {
+            Self::Harmonic { along: (amplitude, _), .. } => *amplitude == 0.0,
+            Self::Swings(_) => true,
+        }
+    }
+
     /// Bounds on the first three derivatives by the period.
     pub(super) fn peaks(&self) -> [f64; 3] {
         match self {

@@ -58,7 +58,7 @@ impl Programmed {
             Measure::Angle => nearest_turn(&turned, &self.turn),
         };
         let (s, seam, distance) = if self.path.is_woven() {
-            self.from_weave(&position, if last_s.is_nan() { s } else { last_s })
+            self.off_weave(&position, if last_s.is_nan() { s } else { last_s })
         } else {
             (s, position, distance)
         };
@@ -67,7 +67,7 @@ impl Programmed {
 
     /// The nearest point of the woven path, found by Gauss and Newton's method from a place near to it: its coordinate, the position without the
     /// weave there, and the distance.
-    fn from_weave(&self, position: &Vector3, near: f64) -> (f64, Vector3, f64) {
+    fn off_weave(&self, position: &Vector3, near: f64) -> (f64, Vector3, f64) {
         let mut s = near;
         for _ in 0..STEPS {
             let jet = self.path.jet(s);

@@ -44,7 +44,7 @@ pub struct MoveFigures {
     /// of the programmed speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_error_max: Option<f64>,
-    /// Greatest distance from the programmed line (MOVL).
+    /// Greatest distance from the programmed line (MOVL), or from a corner's that is woven.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub straightness_max_mm: Option<f64>,
     /// Greatest distance from the programmed arc (MOVC).
@@ -186,6 +186,7 @@ impl Current {
     fn new(info: SegmentInfo, time: f64) -> Self {
         let programmed = match &info.kind {
             SegmentKind::Path(path) => Some(Programmed::new(path)),
+            SegmentKind::Corner { path: Some(path), .. } if path.is_woven() => Some(Programmed::new(path)),
             _ => None,
         };
         let corner = match &info.kind {
@@ -210,14 +211,21 @@ impl Current {
     /// Takes a sample of this segment; returns its distance from the path.
     fn push(&mut self, sample: &Sample, before: Option<Before>, speed: f64) -> f64 {
         self.end = sample.time;
+        let here = sample.tcp.translation.vector;
+        let off = self.programmed.as_ref().map(|programmed| programmed.deviation(&sample.tcp, self.last_s));
+        let seam = off.map_or(here, |off| off.seam);
+        let last_seam = std::mem::replace(&mut self.last_seam, seam);
+        // A weave is judged by its travel along the seam.
+        let is_woven = self.programmed.as_ref().is_some_and(Programmed::is_woven);
+        let travel = before.map(|before| (seam - last_seam).norm() / (sample.time - before.time));
+        let speed = travel.filter(|_| is_woven).unwrap_or(speed);
         if let Some(corner) = &mut self.corner {
-            corner.push(sample.tcp.translation.vector);
+            corner.push(seam);
             if before.is_some_and(|before| before.segment == sample.segment) && is_steady(sample, before) {
                 self.note_speed(speed);
             }
         }
-        let Some(programmed) = &self.programmed else { return f64::NAN };
-        let Deviation { s, seam, distance, angle } = programmed.deviation(&sample.tcp, self.last_s);
+        let Some(Deviation { s, distance, angle, .. }) = off else { return f64::NAN };
         let [from, to] = self.info.rounded;
         if from <= s && s <= self.length - to {
             let [most, turn] = self.off.unwrap_or_default();
@@ -225,15 +233,11 @@ impl Current {
         }
         // Both ends of the cycle must lie in the constant part, of this segment.
         let last_s = std::mem::replace(&mut self.last_s, s);
-        let last_seam = std::mem::replace(&mut self.last_seam, seam);
         let constant = self.info.constant_part.is_some_and(|[from, to]| from <= last_s && s <= to);
         if let (true, Some(before), Some(speed_programmed)) = (constant, before, self.info.speed)
             && sample.mode == Mode::Running
             && before.segment == sample.segment
         {
-            // A weave is judged by the speed of its travel.
-            let travel = (seam - last_seam).norm() / (sample.time - before.time);
-            let speed = if programmed.is_woven() { travel } else { speed };
             let expected = speed_programmed * 0.5 * (before.override_rate + sample.override_rate);
             self.speed_error = self.speed_error.max((speed - expected).abs() / speed_programmed);
             if is_steady(sample, Some(before)) {

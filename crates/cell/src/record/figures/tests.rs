@@ -1,10 +1,11 @@
 //! Figures of motions whose figures are known.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use seamline::control::Mode;
 use seamline::geometry::{Pose, Rotation, Vector3};
 use seamline::path::Path;
+use seamline::weave::{Pattern, Weave, WeaveShape};
 
 use super::*;
 use crate::record::testing::robot;
@@ -362,4 +363,63 @@ fn no_numbers_and_no_samples() {
     let summary = Summary::new(&robot(2), &analyse(&[], 0, |_, _| ()), Outcome::default());
     assert_eq!((summary.verdict, summary.cycles, summary.joint_jerk_max), (Verdict::Ok, 0, 0.0));
     assert!(!summary.to_json().unwrap().contains("inf"));
+}
+
+/// A line of 60 mm along x with a sine of 2 mm about it.
+fn woven_line() -> Path {
+    let shape = WeaveShape {
+        pattern: Pattern::Sine,
+        amplitude: 2e-3,
+        wavelength: 4e-3,
+        dwells: [0.0; 3],
+        tilt: 0.0,
+        elevation: 0.0,
+        right_first: false,
+    };
+    let down = |x: f64| Pose::new(Vector3::new(x, 0.0, 0.0), Vector3::new(PI, 0.0, 0.0));
+    let line = Path::line(&down(0.0), &down(0.06));
+    line.woven(&Weave::try_new(&shape, 0.0, line.length()).unwrap(), 0.0)
+}
+
+/// A weave is held against its own path, and its speed is that of travel: a tool that is 0.03 mm above it is that far off; one that is 2 % fast is that
+/// fast; one whose swings are 0.05 mm short is off by that, and its travel as programmed but for what the nearest place makes of it.
+#[test]
+fn a_weave_is_held_against_its_own_path() {
+    let path = woven_line();
+    for (raised, speed, short) in [(3e-5, 0.01, 0.0), (0.0, 0.0102, 0.0), (0.0, 0.01, 5e-5)] {
+        let info = segment(path, 0.01, Some([1e-3, 0.059]));
+        let findings = analyse(&[info], 5_800, |time, sample| {
+            sample.segment = 1;
+            let s = speed * time;
+            let woven = path.pose(s);
+            let swing = woven.translation.vector.y;
+            sample.tcp = Pose::translation(0.0, -swing * short / 2e-3, raised) * woven;
+        });
+        let figures = &findings.moves[0];
+        let off = figures.straightness_max_mm.unwrap() * 1e-3;
+        assert!((off - raised - short).abs() < 1e-8, "{off}");
+        let error = figures.speed_error_max.unwrap();
+        let expected = (speed / 0.01 - 1.0).abs();
+        assert!(
+            if short > 0.0 { error < 0.02 } else { (error - expected).abs() < 1e-6 },
+            "{error} {expected}"
+        );
+    }
+}
+
+/// Past a corner that is woven, the seam's distance from the point counts.
+#[test]
+fn a_woven_corner_is_judged_at_the_seam() {
+    let path = woven_line();
+    let corner = Vector3::new(0.03, 0.3e-3, 0.0);
+    let kind = SegmentKind::Corner { path: Some(path), corner, permitted: 0.5e-3 };
+    let info = SegmentInfo { kind, ..segment(path, 0.01, None) };
+    let findings = analyse(&[info], 5_800, |time, sample| {
+        sample.segment = 1;
+        sample.tcp = path.pose(0.01 * time);
+    });
+    let figures = &findings.moves[0];
+    assert!((figures.corner_error_mm.unwrap() - 0.3).abs() < 1e-6, "{figures:?}");
+    assert!((figures.speed_max_mm_s.unwrap() - 10.0).abs() < 1e-6, "{figures:?}");
+    assert!(figures.path_deviation_max_mm().unwrap() < 1e-9, "{figures:?}");
 }
