@@ -312,7 +312,7 @@ const WRONG_JOBS: &[(&str, &str, &str)] = &[
     ("C00002=1100.000", "C00002=5100.000", ":22:1: the tool centre point would leave the workspace at ("),
     ("C00002=1100.000", "C00002=2100.000", ":22:1: at "),
     ("C00001=10000,", "C00001=900000,", ":20:1: C00001: joint S at 670.95 deg is outside -179.0 … 179.0 deg"),
-    ("TIMER T=0.10", "WVON WEV#(1)", ":24:1: `WVON"),
+    ("TIMER T=0.10", "WVON WEV#(7)", ":24:1: WEV#(7) is not in the cell file; expected [[weave]]"),
     ("TIMER T=0.10", "SMOVL C00000 V=10.0", ":24:1: `SMOVL"),
     ("TIMER T=0.10", "FROBNICATE C00000", ":24:1: `FROBNICATE"),
 ];
