@@ -300,10 +300,12 @@ impl<const N: usize> Run<N> {
         let (mut route, mut stretches) = (Route::default(), Vec::new());
         for piece in &self.pieces {
             let left = to - route.length();
-            if left <= 0.0 {
+            // A rest that rounding leaves is no path.
+            if left <= SAME_PLACE {
                 break;
             }
-            let path = if left < piece.path.length() { piece.path.part(0.0, left) } else { piece.path };
+            let whole = left >= piece.path.length() - SAME_PLACE;
+            let path = if whole { piece.path } else { piece.path.part(0.0, left) };
             route.push(path);
             stretches.push(Stretch { to: route.length(), limits: piece.limits });
         }

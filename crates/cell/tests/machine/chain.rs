@@ -252,13 +252,15 @@ fn a_spline_passes_its_points() {
     assert!(speeds.iter().all(|speed| (14.85..15.02).contains(speed)), "{speeds:?}");
 }
 
-/// Random runs: points 3 to 120 mm apart at any angle, 5 to 500 mm/s, every kind of zone, the tool turning by up to 10 degrees. Each is
-/// executed: the joints' limits hold, no corner is missed by more than is permitted, and no move is faster than programmed.
-pub(crate) fn random_runs(seed: u64, cases: usize, cell: &Cell) {
-    let mut random = Random(seed);
-    let prefiltered = !cell.vibration.kernels().is_empty();
-    let mut out_of_reach = 0;
-    for case in 0..cases {
+/// A random run: points 3 to 120 mm apart at any angle, 5 to 500 mm/s, every kind of zone, the tool turning by up to 10 degrees.
+pub(crate) struct RandomRun {
+    way: Way,
+    zones: Vec<Zone>,
+    steps: Vec<Step>,
+}
+
+impl RandomRun {
+    pub(crate) fn new(random: &mut Random, cell: &Cell) -> Self {
         let (mut at, mut points) = ([0.0, 0.0], Vec::new());
         for _ in 0..6 {
             let (length, angle) = (3.0 * 40_f64.powf(random.unit()), random.within(-3.1, 3.1));
@@ -268,23 +270,23 @@ pub(crate) fn random_runs(seed: u64, cases: usize, cell: &Cell) {
             points.push((at, random.within(-10.0, 10.0)));
         }
         let way = Way::in_cell(cell.clone(), &points);
-        let zones: Vec<Zone> = (0..6)
-            .map(|_| match random.within(0.0, 4.0) as u8 {
-                0 => Zone::Exact,
-                1 => Zone::Level(random.within(1.0, 8.99) as u8),
-                2 => Zone::CornerRadius { mm: random.within(1.0, 10.0) },
-                _ => Zone::Unspecified,
-            })
-            .collect();
+        let zone = |_| match random.within(0.0, 4.0) as u8 {
+            0 => Zone::Exact,
+            1 => Zone::Level(random.within(1.0, 8.99) as u8),
+            2 => Zone::CornerRadius { mm: random.within(1.0, 10.0) },
+            _ => Zone::Unspecified,
+        };
+        let zones: Vec<Zone> = (0..6).map(zone).collect();
         let speeds: Vec<f64> = (0..6).map(|_| 5.0 * 100_f64.powf(random.unit())).collect();
-        let steps: Vec<Step> =
-            (0..6).map(|k| way.step(k + 1, MovePath::Linear, speeds[k], zones[k])).collect();
-        if prefiltered && planned(&Cell::default_cell().unwrap(), &way.arm, &steps).is_err() {
-            // The arm cannot go there, with or without prefilter.
-            out_of_reach += 1;
-            continue;
-        }
-        let parts = way.plan(&steps);
+        let step = |k: usize| way.step(k + 1, MovePath::Linear, speeds[k], zones[k]);
+        let steps = (0..6).map(step).collect();
+        Self { way, zones, steps }
+    }
+
+    /// Executes it: the joints' limits hold, no corner is missed by more than is permitted, and no move is faster than programmed.
+    pub(crate) fn judge(&self, case: usize) {
+        let Self { way, zones, steps } = self;
+        let parts = way.plan(steps);
         let trace = way.run(&parts);
         for (k, zone) in zones.iter().enumerate() {
             let permitted = match zone {
@@ -302,6 +304,7 @@ pub(crate) fn random_runs(seed: u64, cases: usize, cell: &Cell) {
             .filter_map(|part| part.segment)
             .filter_map(|s| Some((s.segment, s.speed?)))
             .collect();
+        let prefiltered = !way.cell.vibration.kernels().is_empty();
         for (k, speed) in trace.speeds().iter().enumerate() {
             let pair = [trace.segments[k], trace.segments[k + 1]];
             // Behind a prefilter the speed changes before and after the place where it is programmed to.
@@ -309,6 +312,22 @@ pub(crate) fn random_runs(seed: u64, cases: usize, cell: &Cell) {
             let most = here.fold(0.0, |a: f64, (_, b)| a.max(*b));
             assert!(*speed <= most * 1001.0 + 1e-3, "case {case}, cycle {k}: {speed} mm/s of {most} m/s");
         }
+    }
+}
+
+/// Random runs, judged one by one.
+pub(crate) fn random_runs(seed: u64, cases: usize, cell: &Cell) {
+    let mut random = Random(seed);
+    let prefiltered = !cell.vibration.kernels().is_empty();
+    let mut out_of_reach = 0;
+    for case in 0..cases {
+        let run = RandomRun::new(&mut random, cell);
+        if prefiltered && planned(&Cell::default_cell().unwrap(), &run.way.arm, &run.steps).is_err() {
+            // The arm cannot go there, with or without prefilter.
+            out_of_reach += 1;
+            continue;
+        }
+        run.judge(case);
     }
     assert!(out_of_reach * 20 <= cases, "{out_of_reach} of {cases} are no runs");
 }

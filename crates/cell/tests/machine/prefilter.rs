@@ -12,7 +12,7 @@ use seamline_cell::plan::{Arm, Planner};
 use crate::bench::{
     Ar2010, Bench, Random, flexible, independent_forward, independent_torch, move_to, worst_shares,
 };
-use crate::chain::{Way, random_runs};
+use crate::chain::{RandomRun, Way, random_runs};
 
 const START: [f64; 6] = [0.0, 0.2, -0.2, 0.1, -1.2, 0.3];
 const END: [f64; 6] = [0.15, 0.25, -0.15, 0.2, -1.1, 0.2];
@@ -330,6 +330,21 @@ fn corners_keep_their_error_behind_a_prefilter() {
         [(31, "zv", &[9.0][..]), (32, "fir-zvd", &[6.34]), (33, "ei", &[14.0]), (34, "fir-zv", &[8.0, 25.0])]
     {
         random_runs(seed, 12, &flexible(name, modes));
+    }
+}
+
+/// Runs of which the look-ahead for the prefilter ended with a corner: what rounding left of the way behind it had no joints, and the
+/// arm would have had to jump.
+#[test]
+fn a_look_ahead_may_end_with_a_corner() {
+    for (seed, name, modes, case) in [
+        (8144, "fir-zv", &[11.0, 30.0], 18),
+        (9143, "fir", &[11.0, 30.0], 37),
+        (10149, "3hump-ei", &[11.0, 30.0], 3),
+    ] {
+        let (cell, mut random) = (flexible(name, modes), Random(seed));
+        let runs = std::iter::repeat_with(|| RandomRun::new(&mut random, &cell));
+        runs.skip(case).take(1).for_each(|run| run.judge(case));
     }
 }
 
