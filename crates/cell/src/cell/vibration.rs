@@ -1,8 +1,8 @@
-//! What is done about the arm's vibrations: its flexible modes, and the prefilter on the joint commands.
+//! What is done about the arm's vibrations: its flexible modes, and the prefilter on the joint commands or the feedrate.
 
 use std::f64::consts::TAU;
 
-use seamline::control::MODES_MAX;
+use seamline::control::{ActsOn, MODES_MAX};
 use seamline::vibration::{Kernel, KernelError, Mode, ModeError, Prefilter};
 use thiserror::Error;
 
@@ -21,10 +21,11 @@ pub struct FlexibleMode {
     pub damping: f64,
 }
 
-/// Prefilters on the joint commands, one a flexible mode; none by default.
+/// Prefilters on the joint commands or the feedrate, one a flexible mode; none by default.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vibration {
     prefilter: Prefilter,
+    acts_on: ActsOn,
     path_error: f64,
     modes: Vec<FlexibleMode>,
     kernels: Vec<Kernel>,
@@ -65,7 +66,7 @@ impl Vibration {
     /// How far the prefilters may turn the tool off a path, in radians: 0.2°, as at corners.
     pub const TURN_ERROR: f64 = 3.5e-3;
 
-    /// A prefilter for modes, with the distance in metres that it may take the tool off its path.
+    /// A prefilter on the joint commands for modes, with the distance in metres that it may take the tool off its path.
     ///
     /// # Errors
     /// [`VibrationError`] where this prefilter cannot be made for these modes.
@@ -89,16 +90,18 @@ impl Vibration {
         if length > LENGTH_MAX {
             return Err(VibrationError::TooLong(length));
         }
-        Ok(Self { prefilter, path_error, modes, kernels })
+        Ok(Self { prefilter, acts_on: ActsOn::Joints, path_error, modes, kernels })
     }
 
     pub(super) fn read(modes: Vec<FlexibleMode>, mut section: Section<'_>) -> Result<Self, CellError> {
         let names = Prefilter::ALL.map(|prefilter| (prefilter.name().to_lowercase(), prefilter));
         let prefilter =
             section.choice("prefilter", &names.each_ref().map(|(name, of)| (name.as_str(), *of)))?;
+        let acts_on = section.choice("on", &[("joints", ActsOn::Joints), ("feedrate", ActsOn::Feedrate)])?;
         let path_error = section.number("path_error_mm", Unit::Milli, 0.01..=100.0)?;
         let vibration = Self::try_new(prefilter, path_error, modes)
-            .map_err(|error| section.unexpected("prefilter", &error.to_string()))?;
+            .map_err(|error| section.unexpected("prefilter", &error.to_string()))?
+            .acting_on(acts_on);
         section.finish()?;
         Ok(vibration)
     }
@@ -108,7 +111,19 @@ impl Vibration {
     /// # Errors
     /// As [`Vibration::try_new`].
     pub fn with_prefilter(&self, prefilter: Prefilter) -> Result<Self, VibrationError> {
-        Self::try_new(prefilter, self.path_error, self.modes.clone())
+        Ok(Self::try_new(prefilter, self.path_error, self.modes.clone())?.acting_on(self.acts_on))
+    }
+
+    /// The same prefilter on something else.
+    #[must_use]
+    pub fn acting_on(self, acts_on: ActsOn) -> Self {
+        Self { acts_on, ..self }
+    }
+
+    /// What the prefilter acts on.
+    #[must_use]
+    pub fn acts_on(&self) -> ActsOn {
+        self.acts_on
     }
 
     /// The prefilter.
@@ -117,7 +132,7 @@ impl Vibration {
         self.prefilter
     }
 
-    /// How far the prefilters may take the tool off a path, in metres.
+    /// How far prefilters on the joints may take the tool off a path, in metres.
     #[must_use]
     pub fn path_error(&self) -> f64 {
         self.path_error

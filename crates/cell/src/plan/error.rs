@@ -134,6 +134,17 @@ pub enum Problem {
     /// A weave that cannot be, or does not agree with the cell's limits.
     #[error("{0}")]
     Weave(String),
+    /// Too many short moves for a prefilter on the feedrate.
+    #[error(
+        "more than {most} moves within the {seconds:.2} s that the prefilter on the feedrate takes: expected longer or slower moves, or \
+         `on = \"joints\"` in [vibration]"
+    )]
+    ShortMoves {
+        /// How many there may be.
+        most: usize,
+        /// The prefilter's length.
+        seconds: f64,
+    },
     /// The generator gives no motion.
     #[error("no motion to {name}: {reason}")]
     Generator {

@@ -1,6 +1,6 @@
 //! From the run to blocks: followed, timed, and handed out as far as it is settled.
 
-use seamline::control::{BLOCK_PIECES, Block, Command, Motion, PathMotion};
+use seamline::control::{ActsOn, BLOCK_PIECES, Block, Command, Motion, PathMotion};
 use seamline::kinematics::InverseError;
 use seamline::path::TimingPiece;
 
@@ -14,7 +14,7 @@ use super::route::Route;
 use super::run::{Link, Piece, Sight, Stops};
 use super::smear;
 use super::suggest::Trouble;
-use super::timing::{Course, JointPath as _, TimingError, TimingLimits, time_path};
+use super::timing::{Course, JointPath as _, PathLimits, Stretch, TimingError, TimingLimits, time_path};
 use crate::job::{Action, Location, Step};
 use crate::record::SegmentKind;
 
@@ -29,6 +29,8 @@ const SAME_JOINT_PASSING: f64 = 0.5;
 #[derive(Debug, Clone, Copy)]
 struct Part<'a, const N: usize> {
     timing: &'a [TimingPiece],
+    /// The limits along it, up to places of the path.
+    zones: &'a [Stretch],
     /// The robot is at rest afterwards.
     rests: bool,
     /// Where the joints are afterwards.
@@ -75,13 +77,16 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         };
         let caps = self.caps(&ahead, &mut joints, sight.to);
         let mut stretches = smear::slowed(&stretches, &caps, self.run.speed);
+        let zones = if self.run.acts_on == ActsOn::Feedrate { stretches.clone() } else { Vec::new() };
         stretches.iter_mut().for_each(|stretch| stretch.limits = stretch.limits.with_room());
         let mut joints = joints.over(route.clone());
         let course = Course { stretches: &stretches, start: self.run.speed, open: sight.open };
+        let before = out.len();
         let timing = match time_path(&mut joints, &self.timing_limits(), &course) {
             Ok(timing) => timing,
             Err(TimingError::Start { .. } | TimingError::NoSpeed) if !self.run.way_to_rest.is_empty() => {
-                self.come_to_rest(&mut joints, out);
+                self.come_to_rest(&zones, &mut joints, out);
+                self.remember(&out[before..])?;
                 return Ok(true);
             }
             Err(error) => return Err(self.timing_fault(&route, &error)),
@@ -100,7 +105,8 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             .map_err(|(index, problem)| self.give_up(index, problem))?;
         self.remark_caps(&mut remarks, &caps, end)?;
         let at = self.run.piece(0).map(|piece| piece.link.step.at.clone());
-        self.hand_out_up_to(end, !sight.open, settled, &mut joints, &remarks, out);
+        self.hand_out_up_to((end, !sight.open), (settled, &zones), &mut joints, &remarks, out);
+        self.remember(&out[before..])?;
         self.run.way_to_rest = cut::moved_back(rest, end);
         self.run.keep_caps(&caps, end);
         if !sight.open && !self.run.is_empty() {
@@ -110,31 +116,38 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     }
 
     /// The way that was planned to rest where the run was known to end: for a run that does not go on in motion.
-    fn come_to_rest(&mut self, joints: &mut PathJoints<'_, N, K>, out: &mut Vec<Planned<N>>) {
+    fn come_to_rest(
+        &mut self,
+        zones: &[Stretch],
+        joints: &mut PathJoints<'_, N, K>,
+        out: &mut Vec<Planned<N>>,
+    ) {
         let way = std::mem::take(&mut self.run.way_to_rest);
         let end = way.last().map_or(0.0, |piece| piece.end().position);
         let first = self.run.piece(0).map(|piece| piece.link.step.at.clone());
-        self.hand_out_up_to(end, true, &way, joints, &Remarks::default(), out);
+        self.hand_out_up_to((end, true), (&way, zones), joints, &Remarks::default(), out);
         out.extend(first.map(stops_on_the_way));
     }
 
     /// Hands out the motion up to a place of the run; there it `rests`, or goes on.
     fn hand_out_up_to(
         &mut self,
-        end: f64,
-        rests: bool,
-        timing: &[TimingPiece],
+        (end, rests): (f64, bool),
+        (timing, zones): (&[TimingPiece], &[Stretch]),
         joints: &mut PathJoints<'_, N, K>,
         remarks: &Remarks,
         out: &mut Vec<Planned<N>>,
     ) {
         let ends = self.run.ends_up_to(end);
         let parts = cut::by_path(timing, &ends);
-        for (index, (part, &to)) in parts.iter().zip(&ends).enumerate() {
+        let mut from = 0.0;
+        for (index, (timing, &to)) in parts.iter().zip(&ends).enumerate() {
             let last = index + 1 == ends.len();
             let joints = joints.jet(to).map_or(self.joints, |jet| jet.position);
-            let part = Part { timing: part, rests: rests && last, joints };
+            let zones = zones_between(zones, from, to);
+            let part = Part { timing, zones: &zones, rests: rests && last, joints };
             self.hand_out_part(&part, remarks.of(index), out);
+            from = to;
         }
     }
 
@@ -149,8 +162,8 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             planned.notices.extend(self.other_configuration(&piece.link, &part.joints));
             planned.notices.extend(smear::off_weld(&piece));
         }
-        planned.commands = self.blocks(&piece, part.timing, from_rest, part.rests);
-        planned.segment = Some(smear::lagging(&piece.info, self.run.smear.as_ref()));
+        planned.commands = self.blocks(&piece, part, from_rest);
+        planned.segment = Some(smear::lagging(&piece.info, &self.run));
         planned.duration = part.timing.iter().map(|piece| piece.duration).sum();
         if part.rests {
             planned.duration += self.run_out();
@@ -162,34 +175,41 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         self.run.speed = if part.rests { 0.0 } else { end };
     }
 
-    fn timing_limits(&self) -> TimingLimits<N> {
+    pub(super) fn timing_limits(&self) -> TimingLimits<N> {
         let limits = &self.arm.limits;
         let (velocity, acceleration, jerk) = (limits.velocity, limits.acceleration, limits.jerk);
         TimingLimits { velocity, acceleration, jerk }.with_room()
     }
 
-    fn blocks(
-        &self,
-        piece: &Piece<N>,
-        timing: &[TimingPiece],
-        from_rest: bool,
-        rests: bool,
-    ) -> Vec<Command<N>> {
-        let along = (piece.limits.acceleration, piece.limits.jerk);
-        let chunks = timing.chunks(BLOCK_PIECES);
+    fn blocks(&self, piece: &Piece<N>, part: &Part<'_, N>, from_rest: bool) -> Vec<Command<N>> {
+        let whole = [Stretch { to: piece.path.length(), limits: piece.limits }];
+        let zones = if part.zones.is_empty() { &whole } else { part.zones };
+        let ends: Vec<f64> = zones.iter().map(|zone| zone.to).collect();
+        let timings = cut::by_path(part.timing, &ends);
+        let starts = [0.0].iter().chain(&ends);
+        let chunks: Vec<(PathLimits, Vec<TimingPiece>)> = timings
+            .iter()
+            .zip(starts)
+            .zip(zones)
+            .flat_map(|((timing, start), zone)| {
+                let timing = cut::moved_back(timing, -start);
+                timing.chunks(BLOCK_PIECES).map(|chunk| (zone.limits, chunk.to_vec())).collect::<Vec<_>>()
+            })
+            .collect();
         let last = chunks.len().saturating_sub(1);
-        let block = |(k, pieces): (usize, &[TimingPiece])| {
+        let block = |(k, (limits, pieces)): (usize, &(PathLimits, Vec<TimingPiece>))| {
+            let along = (limits.acceleration, limits.jerk);
             let motion = PathMotion::new(piece.path, &self.tool.flange_from_tcp, along, pieces)?;
             Some(Command::Move(Block {
                 line: piece.info.line,
                 segment: piece.info.segment,
                 flange_from_tcp: self.tool.flange_from_tcp,
                 starts_at_rest: from_rest && k == 0,
-                ends_at_rest: rests && k == last,
+                ends_at_rest: part.rests && k == last,
                 motion: Motion::Path(motion),
             }))
         };
-        chunks.enumerate().filter_map(block).collect()
+        chunks.iter().enumerate().filter_map(block).collect()
     }
 
     /// The move ends in another turn or configuration than the point was taught in.
@@ -252,6 +272,19 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             }
         }
     }
+}
+
+/// The limits between two places of a route, up to places counted from the first one.
+fn zones_between(zones: &[Stretch], from: f64, to: f64) -> Vec<Stretch> {
+    let mut start = 0.0;
+    let mut between = Vec::new();
+    for zone in zones {
+        if start < to && zone.to > from {
+            between.push(Stretch { to: zone.to.min(to) - from, limits: zone.limits });
+        }
+        start = zone.to;
+    }
+    between
 }
 
 fn stops_on_the_way<const N: usize>(at: Location) -> Planned<N> {

@@ -9,6 +9,7 @@ mod arm;
 mod corner;
 mod cut;
 mod error;
+mod feed;
 mod hand_out;
 mod joint_corner;
 mod joint_move;

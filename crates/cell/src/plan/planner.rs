@@ -11,7 +11,6 @@ use super::error::{PlanError, Problem};
 use super::joint_move::JointMove;
 use super::resolve::{self, Goal, ToolPose, goal};
 use super::run::{Link, Run, Stops};
-use super::smear::Smear;
 use super::speed;
 use super::tool_path;
 use super::weave::WeaveOrder;
@@ -89,7 +88,7 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
     /// # Errors
     /// [`Problem::UnknownTool`] where the cell has no tool 0.
     pub fn new(arm: &'a Arm<N, K>, cell: &'a Cell, joints: [f64; N]) -> Result<Self, Problem> {
-        let (tool, run) = (ToolPose::of(cell, 0)?, Run::new(Smear::of(&cell.vibration)));
+        let (tool, run) = (ToolPose::of(cell, 0)?, Run::new(&cell.vibration));
         Ok(Self {
             arm,
             cell,

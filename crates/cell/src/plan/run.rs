@@ -3,17 +3,19 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use seamline::control::ActsOn;
 use seamline::geometry::Pose;
 use seamline::path::corner::Blend;
 use seamline::path::{Measure, Path, TimingPiece};
 use seamline::weave::Weave;
 
-use super::corner::{BLEND_SHARES, SHARE, limits, lost_time, passing};
+use super::corner::{BLEND_SHARES, SHARE, limits, lost_time, passing, takes_longer_than_a_stop};
 use super::resolve::Goal;
 use super::route::Route;
 use super::smear::{Cap, Smear};
 use super::smeared_corner::Pass;
 use super::timing::{PathLimits, Stretch};
+use crate::cell::Vibration;
 use crate::job::{Location, Step};
 use crate::record::{SegmentInfo, SegmentKind};
 
@@ -79,12 +81,15 @@ pub(super) struct Sight {
 #[derive(Debug, Clone)]
 pub(super) struct Run<const N: usize> {
     pieces: VecDeque<Piece<N>>,
-    /// What prefilters do to it.
+    /// What prefilters do to it, and what they act on.
     pub(super) smear: Option<Smear>,
-    /// Speeds not to pass on account of places that are handed over.
+    pub(super) acts_on: ActsOn,
+    /// Limits on account of places that are handed over.
     pub(super) caps: Vec<Cap>,
     /// Speed at its start, where there is no acceleration.
     pub(super) speed: f64,
+    /// How long the last moves handed out take, in seconds: what prefilters on the feedrate have to remember.
+    pub(super) laid: VecDeque<f64>,
     /// How it would come to rest from there, as planned when less of it was known.
     pub(super) way_to_rest: Vec<TimingPiece>,
     /// How many times as far as usual the next look goes: where a nearer one settled nothing, it would find the same again.
@@ -121,9 +126,10 @@ impl<const N: usize> Link<N> {
 
 impl<const N: usize> Run<N> {
     /// Empty.
-    pub(super) fn new(smear: Option<Smear>) -> Self {
-        let (caps, way_to_rest) = (Vec::new(), Vec::new());
-        Self { pieces: VecDeque::new(), smear, caps, speed: 0.0, way_to_rest, farther: 1.0 }
+    pub(super) fn new(vibration: &Vibration) -> Self {
+        let (caps, laid, way_to_rest) = (Vec::new(), VecDeque::new(), Vec::new());
+        let (smear, acts_on) = (Smear::of(vibration), vibration.acts_on());
+        Self { pieces: VecDeque::new(), smear, acts_on, caps, laid, speed: 0.0, way_to_rest, farther: 1.0 }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -149,6 +155,7 @@ impl<const N: usize> Run<N> {
     /// # Errors
     /// [`Stops`] where the robot must stop on the point between; the run is unchanged.
     pub(super) fn push(&mut self, link: &Link<N>, segment: &mut u32) -> Result<(), Stops> {
+        let smear = self.rounding();
         let Some(last) = self.pieces.back_mut() else {
             self.begin(link, segment);
             return Ok(());
@@ -162,7 +169,7 @@ impl<const N: usize> Run<N> {
             self.add(link, link.path, 0.0, segment);
             return Ok(());
         };
-        if let Some(smear) = self.smear {
+        if let Some(smear) = smear {
             let point = link.path.pose(0.0).translation.vector;
             let hardest = [last.limits, link.limits].map(|limits| [limits.acceleration, limits.jerk]);
             let hardest = [0, 1].map(|k| f64::max(hardest[0][k], hardest[1][k]));
@@ -173,10 +180,13 @@ impl<const N: usize> Run<N> {
             let blends = BLEND_SHARES.iter().filter_map(|share| blend(share * permitted).ok()?);
             corner = blends.min_by(|a, b| lost(a).total_cmp(&lost(b))).unwrap_or(corner);
         }
-        last.path = corner.before;
-        last.info.rounded[1] = rounded(corner.trims[0], last.limits.speed, self.smear);
-        *segment += 1;
         let limits = limits(&corner, of_both);
+        if takes_longer_than_a_stop(&corner, &limits, speed, self.smear) {
+            return Err(Stops("going round it would take longer than a stop"));
+        }
+        last.path = corner.before;
+        last.info.rounded[1] = rounded(corner.trims[0], last.limits.speed, smear);
+        *segment += 1;
         let piece = last.corner(&corner.path, limits, *segment);
         self.pieces.push_back(piece);
         self.add(link, corner.after, corner.trims[1], segment);
@@ -186,7 +196,7 @@ impl<const N: usize> Run<N> {
     fn add(&mut self, link: &Link<N>, path: Path, offset: f64, segment: &mut u32) {
         *segment += 1;
         let (mut info, limits) = (link.info(*segment), link.limits);
-        info.rounded[0] = if offset > 0.0 { rounded(offset, limits.speed, self.smear) } else { 0.0 };
+        info.rounded[0] = if offset > 0.0 { rounded(offset, limits.speed, self.rounding()) } else { 0.0 };
         let link = Arc::new(link.clone());
         let (begun, slowed, off, cap, after) = (false, false, 0.0, None, Vec::new());
         self.pieces.push_back(Piece { link, info, path, limits, offset, begun, slowed, off, cap, after });
@@ -222,6 +232,11 @@ impl<const N: usize> Run<N> {
             if closed { whole } else { whole - SHARE * last.link.path.length() - 2.0 * self.reach() };
         let to = self.reached_in(HORIZON * self.farther);
         (to < certain).then_some(Sight { to, open: self.farther <= FARTHEST })
+    }
+
+    /// What prefilters do to the path itself: nothing where they act on the feedrate.
+    fn rounding(&self) -> Option<Smear> {
+        self.smear.filter(|_| self.acts_on == ActsOn::Joints)
     }
 
     /// How far a place may slow down the way before it, on account of prefilters.

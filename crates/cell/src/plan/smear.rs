@@ -11,6 +11,7 @@
 //! matter, and neither do override and pause. `docs/vibration.md` has the derivation.
 
 use nalgebra::SVector;
+use seamline::control::ActsOn;
 use seamline::geometry::{Pose, Vector3};
 use seamline::kinematics::{JointJet, Kinematics};
 use seamline::path::{Measure, Path};
@@ -22,7 +23,7 @@ use super::joint_path::PathJoints;
 use super::planner::Planner;
 use super::remark::{Remarks, units};
 use super::route::Route;
-use super::run::Piece;
+use super::run::{Piece, Run};
 use super::smeared_corner::Passing;
 use super::timing::{JointPath as _, PathLimits, Stretch};
 use crate::cell::Vibration;
@@ -60,13 +61,13 @@ pub(super) struct Smear {
     kernels: usize,
 }
 
-/// A stretch of the run with a greatest speed, on account of a place in it.
+/// A stretch of the run with limits of its own, on account of a place in it; infinite for none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cap {
     pub(super) place: f64,
     pub(super) from: f64,
     pub(super) to: f64,
-    pub(super) speed: f64,
+    pub(super) limits: PathLimits,
 }
 
 /// The greatest curvature of a path as far as it comes from curved joints: of the tool's place and of its turning, per path².
@@ -135,7 +136,7 @@ impl Smear {
     /// A cap on account of a place.
     fn cap(&self, place: f64, speed: f64) -> Cap {
         let reach = speed * self.length;
-        Cap { place, from: place - reach, to: place + reach, speed }
+        Cap { place, from: place - reach, to: place + reach, limits: PathLimits::of_speed(speed) }
     }
 }
 
@@ -200,7 +201,7 @@ fn of_path(route: &Route, s: f64) -> [Vector3; 2] {
 
 /// The places of a move's path that are looked at, between two coordinates. They lie where they lie on the whole move, whatever part of it
 /// is asked for.
-fn places(path: &Path, from: f64, to: f64) -> impl Iterator<Item = f64> {
+pub(super) fn places(path: &Path, from: f64, to: f64) -> impl Iterator<Item = f64> {
     let length = path.length();
     let turn = path.pose(0.0).rotation.angle_to(&path.pose(length).rotation);
     let way = if path.measure() == Measure::Length { length / SPACING[0] } else { 0.0 };
@@ -219,9 +220,10 @@ pub(super) fn slowed(stretches: &[Stretch], caps: &[Cap], start: f64) -> Vec<Str
     let mut slowed: Vec<Stretch> = Vec::new();
     for to in ends {
         let Some(stretch) = stretches.iter().find(|stretch| stretch.to >= to) else { break };
-        let cap = least(caps, from, to);
-        let cap = if from == 0.0 { cap.max(start) } else { cap };
-        let limits = PathLimits { speed: stretch.limits.speed.min(cap), ..stretch.limits };
+        let mut limits = over(caps, from, to).fold(stretch.limits, |least, cap| least.and(&cap.limits));
+        if from == 0.0 {
+            limits.speed = limits.speed.max(start.min(stretch.limits.speed));
+        }
         match slowed.last_mut() {
             Some(before) if before.limits == limits => before.to = to,
             _ => slowed.push(Stretch { to, limits }),
@@ -233,8 +235,18 @@ pub(super) fn slowed(stretches: &[Stretch], caps: &[Cap], start: f64) -> Vec<Str
 
 /// The least cap between two coordinates.
 pub(super) fn least(caps: &[Cap], from: f64, to: f64) -> f64 {
-    let here = caps.iter().filter(|cap| cap.from < to && cap.to > from);
-    here.fold(f64::INFINITY, |least, cap| least.min(cap.speed))
+    over(caps, from, to).fold(f64::INFINITY, |least, cap| least.min(cap.limits.speed))
+}
+
+/// The least cap on account of a place between two coordinates.
+fn least_within(caps: &[Cap], from: f64, to: f64) -> f64 {
+    let of = caps.iter().filter(|cap| (from..to).contains(&cap.place));
+    of.fold(f64::INFINITY, |least, cap| least.min(cap.limits.speed))
+}
+
+/// The caps that hold somewhere between two coordinates.
+fn over(caps: &[Cap], from: f64, to: f64) -> impl Iterator<Item = &Cap> {
+    caps.iter().filter(move |cap| cap.from < to && cap.to > from)
 }
 
 /// What is said of a weld that the prefilters take off its path.
@@ -245,11 +257,12 @@ pub(super) fn off_weld<const N: usize>(piece: &Piece<N>) -> Option<String> {
 }
 
 /// What a motion is held against when it comes out of the prefilters: the programmed speed is there only once all that is inside has it. What
-/// they leave of a weave is no longer a function of the path: a woven move has no figures, and past a woven corner the weave may lead as far aside
+/// those on the joints leave of a weave is no longer a function of the path: a woven move has no figures, and past a woven corner the weave may lead as far aside
 /// as it reaches.
-pub(super) fn lagging(info: &SegmentInfo, smear: Option<&Smear>) -> SegmentInfo {
-    let Some((smear, speed)) = smear.zip(info.speed) else { return *info };
-    if let Some((path, weave)) = info.kind.path().and_then(|path| Some((path, path.weave()?))) {
+pub(super) fn lagging<const N: usize>(info: &SegmentInfo, run: &Run<N>) -> SegmentInfo {
+    let Some((smear, speed)) = run.smear.zip(info.speed) else { return *info };
+    let woven = info.kind.path().and_then(|path| Some((path, path.weave()?)));
+    if let Some((path, weave)) = woven.filter(|_| run.acts_on == ActsOn::Joints) {
         let rounded = [path.length(); 2];
         let kind = match info.kind {
             SegmentKind::Corner { corner, permitted, .. } => {
@@ -269,6 +282,9 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     /// before `to`.
     pub(super) fn caps(&mut self, ahead: &Route, joints: &mut PathJoints<'_, N, K>, to: f64) -> Vec<Cap> {
         let Some(smear) = self.run.smear else { return Vec::new() };
+        if self.run.acts_on == ActsOn::Feedrate {
+            return self.feed_caps(ahead, joints, &smear);
+        }
         let (fastest, reach, hardest) = (self.run.fastest(), self.run.reach(), self.run.hardest());
         let mut caps = std::mem::take(&mut self.run.caps);
         // A weave is damped, which is said where it is laid; it is no error of the seam's.
@@ -314,7 +330,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         for (index, pass) in corners {
             caps.extend(self.run.pass_corner(index, pass));
         }
-        caps.retain(|cap| cap.speed < fastest);
+        caps.retain(|cap| cap.limits.speed < fastest);
         for (index, place, bend, speed) in bends {
             self.run.note_off(index, smear.error(&bend, speed.min(least(&caps, place, place))));
         }
@@ -330,7 +346,12 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     ) -> Result<(), PlanError> {
         let mut refused = None;
         for (index, (from, piece)) in self.run.placed().take_while(|(from, _)| *from < end).enumerate() {
-            let speed = least(caps, from, (from + piece.path.length()).min(end));
+            let to = (from + piece.path.length()).min(end);
+            let speed = match self.run.acts_on {
+                ActsOn::Joints => least(caps, from, to),
+                // What lies next to it only reaches into it.
+                ActsOn::Feedrate => least_within(caps, from, to),
+            };
             if speed >= piece.limits.speed * (1.0 - SAME_SPEED) || piece.is_slowed() {
                 continue;
             }
@@ -348,8 +369,16 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     /// A slowdown on account of prefilters in words. With the arc on it may be refused.
     fn cap_text(&self, piece: &Piece<N>, speed: f64) -> Result<String, Problem> {
         let (_, unit, factor) = units(&piece.path);
+        let reason = match self.run.acts_on {
+            ActsOn::Joints => {
+                "the prefilter would take the tool farther off the path or a corner than permitted"
+            }
+            ActsOn::Feedrate => {
+                "a joint could pass its limits, whatever speeds the prefilter on the feedrate mixes"
+            }
+        };
         let text = format!(
-            "slows from {:.1} to {:.1} {unit}{}: faster, the prefilter would take the tool farther off the path or a corner than permitted",
+            "slows from {:.1} to {:.1} {unit}{}: faster, {reason}",
             piece.limits.speed * factor,
             speed * factor,
             if piece.info.arc { " with the arc on" } else { "" },

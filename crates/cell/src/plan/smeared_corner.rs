@@ -19,6 +19,7 @@ use seamline::geometry::Vector3;
 
 use super::route::Route;
 use super::smear::{Bend, Cap, FOR_JOINTS, Smear};
+use super::timing::PathLimits;
 use crate::cell::Vibration;
 
 /// Places on either side that are looked at, in powers of their distance, the nearest at this share of the blend.
@@ -56,7 +57,8 @@ pub(super) struct Pass {
 
 impl Pass {
     pub(super) fn cap(&self, [from, to]: [f64; 2]) -> Cap {
-        Cap { place: from, from: from - self.reach, to: to + self.reach, speed: self.speed }
+        let limits = PathLimits::of_speed(self.speed);
+        Cap { place: from, from: from - self.reach, to: to + self.reach, limits }
     }
 }
 

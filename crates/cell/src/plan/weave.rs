@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Complex;
+use seamline::control::ActsOn;
 use seamline::geometry::PoseJet;
 use seamline::path::{Curve, Path, SeamFrame};
 use seamline::vibration::Kernel;
@@ -13,7 +14,7 @@ use super::error::{PlanError, Problem};
 use super::planner::{Planned, Planner};
 use super::run::Piece;
 use super::workspace;
-use crate::cell::{self, CartesianLimits, Cell, WeavePattern, WeaveRate, WeaveSide};
+use crate::cell::{self, CartesianLimits, Cell, Vibration, WeavePattern, WeaveRate, WeaveSide};
 use crate::job::WeaveCondition;
 
 /// What would agree is said this much below the bound.
@@ -167,7 +168,7 @@ impl WeaveOrder {
                 let fault = |problem| (from, problem);
                 let speed = part.iter().map(|piece| piece.limits.speed).fold(0.0, f64::max);
                 let weave = self.weave(part, speed, cell).map_err(fault)?;
-                let damped = self.damped(speed, cell.vibration.kernels()).map_err(fault)?;
+                let damped = self.damped(speed, on_joints(&cell.vibration)).map_err(fault)?;
                 if damped != self.damped {
                     let (at, notices) = (&part[0].link.step.at, damped.iter().cloned().collect());
                     out.push(Planned { notices, ..Planned::part(at) });
@@ -330,6 +331,11 @@ fn longer(wavelength: f64, keeps: impl Fn(f64) -> bool) -> Option<f64> {
         if keeps(middle) { long = middle } else { short = middle }
     }
     keeps(long).then_some(long)
+}
+
+/// The prefilters that damp a weave: on the feedrate they leave it as it is.
+fn on_joints(vibration: &Vibration) -> &[Kernel] {
+    if vibration.acts_on() == ActsOn::Joints { vibration.kernels() } else { &[] }
 }
 
 /// The share of a weave's amplitude that kernels one behind the other leave.

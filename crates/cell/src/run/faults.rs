@@ -29,6 +29,9 @@ pub fn describe(fault: &Fault, joints: &[JointInfo]) -> String {
         Fault::NoInverse { position } => at("no joint solution", &position),
         Fault::NotFinite { axis } => format!("joint {} is not a number", joint(axis)),
         Fault::Starved => "no motion planned ahead".into(),
+        Fault::TrackForgotten { moves } => {
+            format!("more than {moves} moves within the length of the prefilter on the feedrate")
+        }
         Fault::Drive(DriveFault::Silent) => "drives silent".into(),
         Fault::Drive(DriveFault::Axis(axis, code)) => format!("drive of joint {}: alarm {code}", joint(axis)),
         Fault::Overrun { count } => format!("{count} cycles in a row were late"),

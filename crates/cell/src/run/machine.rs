@@ -60,7 +60,8 @@ pub fn joint_prefilter<const N: usize>(cell: &Cell) -> Result<JointPrefilter<N, 
     let period = cell.cycle.period;
     let stage =
         |kernel: &Kernel| (*kernel, vec![StageEntry::ZERO; stage_entries(kernel, period)].into_boxed_slice());
-    JointPrefilter::try_new(cell.vibration.kernels().iter().map(stage), period)
+    let prefilter = JointPrefilter::try_new(cell.vibration.kernels().iter().map(stage), period)?;
+    Ok(prefilter.acting_on(cell.vibration.acts_on()))
 }
 
 /// A controller, its devices and its queue. [`Machine::cycle`] neither allocates nor locks.

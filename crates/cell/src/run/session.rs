@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use rtrb::RingBuffer;
+use seamline::control::ActsOn;
 
 use super::beat::{Beat, LoopFigures, Plant};
 use super::check::{CheckReport, check};
@@ -130,10 +131,10 @@ fn logical<const N: usize, K: PlanningArm<N>>(
     (samples, LoopFigures { stage_times: plant.machine.stage_times(), ..LoopFigures::default() })
 }
 
-/// The figures may be off by what the cell lets a prefilter do.
+/// The figures may be off by what the cell lets a prefilter on the joints do.
 fn acceptance(cell: &Cell) -> Acceptance {
     let mut acceptance = Acceptance::default();
-    if !cell.vibration.kernels().is_empty() {
+    if !cell.vibration.kernels().is_empty() && cell.vibration.acts_on() == ActsOn::Joints {
         acceptance.path_deviation = acceptance.path_deviation.max(cell.vibration.path_error());
         acceptance.orientation_deviation = Vibration::TURN_ERROR;
     }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use seamline::arc::ArcSource;
 use seamline::control::{
-    ArcRules, Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, Mode, NoClock,
-    PrefilterEntry, ServoModel,
+    ActsOn, ArcRules, Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, Mode,
+    NoClock, PrefilterEntry, ServoModel,
 };
 use seamline::drive::Drive;
 use seamline::kinematics::SixAxisArm;
@@ -276,6 +276,13 @@ pub(crate) fn flexible(prefilter: &str, modes: &[f64]) -> Cell {
             &format!("[[flexible_mode]]\nnumber = {number}\nfrequency_hz = {frequency:?}\ndamping = 0.02\n");
     }
     Cell::parse(&text, "flexible.toml").unwrap()
+}
+
+/// The same with the prefilter on the feedrate.
+pub(crate) fn on_feedrate(prefilter: &str, modes: &[f64]) -> Cell {
+    let mut cell = flexible(prefilter, modes);
+    cell.vibration = cell.vibration.acting_on(ActsOn::Feedrate);
+    cell
 }
 
 /// splitmix64.

@@ -13,6 +13,7 @@ mod chain;
 mod cycle;
 mod fault_matrix;
 mod faults;
+mod feedrate;
 mod joint_chain;
 mod no_alloc;
 mod pause;

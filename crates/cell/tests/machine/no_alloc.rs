@@ -4,7 +4,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell as Flag;
 
-use crate::bench::{Ar2010, flexible, move_to};
+use crate::bench::{Ar2010, flexible, move_to, on_feedrate};
 use rtrb::RingBuffer;
 use seamline::arc::ArcSetting;
 use seamline::control::{Command, Event, Mode};
@@ -76,6 +76,7 @@ fn a_million_cycles_allocate_nothing() {
 #[test]
 fn nor_do_they_with_prefilters_for_two_modes() {
     run(&flexible("fir-zvd", &[6.34, 17.0]));
+    run(&on_feedrate("fir-zvd", &[6.34, 17.0]));
 }
 
 fn run(cell: &Cell) {

@@ -8,7 +8,7 @@ use seamline_cell::job::{
 };
 use seamline_cell::plan::Planned;
 
-use crate::bench::{Bench, Random, commands, flexible, move_to, planned, step};
+use crate::bench::{Bench, Random, commands, flexible, move_to, on_feedrate, planned, step};
 use crate::chain::{Trace, Way};
 use crate::weld::{at_random_instants, default_cell, go_on, track};
 
@@ -365,6 +365,22 @@ fn what_a_prefilter_leaves_of_a_weave_is_said() {
     let (way, steps) = woven(fast, Zone::Exact);
     let error = planned(&flexible("zvd", &[8.0]), &way.arm, &steps).unwrap_err().to_string();
     assert!(error.contains("the prefilter leaves") && error.contains("expected at least 50 %"), "{error}");
+}
+
+/// A prefilter on the feedrate leaves a weave its size, and nothing need be said.
+#[test]
+fn a_prefilter_on_the_feedrate_leaves_a_weave_as_it_is() {
+    for name in ["zv", "fir-zvd"] {
+        let cell = on_feedrate(name, &[8.0]);
+        let (way, steps) = woven(wev(1), Zone::Exact);
+        let parts = planned(&cell, &way.arm, &steps).unwrap();
+        assert_eq!(notices(&parts), Vec::<&String>::new());
+        let trace = Way { cell: cell.clone(), ..way.clone() }.run(&parts);
+        let middle = about_the_seam(&way, &trace.tools);
+        let middle = middle.iter().filter(|[x, y, _]| (20.0..70.0).contains(x) && y.abs() < 5.0);
+        let [first, second] = middle.fold([0.0_f64; 2], |[l, r], [_, y, _]| [l.max(*y), r.max(-y)]);
+        assert!((first - 2.0).abs() < 0.02 && (second - 2.0).abs() < 0.02, "{name}: {first} {second}");
+    }
 }
 
 /// A MOVJ within a weave is said to go without.

@@ -1,7 +1,7 @@
 //! Welding interrupted: pauses at random instants, the arc lit again with the overlap asked for, misfires, loss, dry runs, backing up.
 
 use nalgebra::Vector3;
-use seamline::control::{Command, CycleOutput, Event, Mode};
+use seamline::control::{ActsOn, Command, CycleOutput, Event, Mode};
 use seamline::safety::Fault;
 use seamline::vibration::Prefilter;
 use seamline_cell::cell::{Cell, FlexibleMode, Vibration};
@@ -396,8 +396,14 @@ fn a_paused_weld_goes_on_behind_a_prefilter() {
     let mode = FlexibleMode { frequency_hz: 6.34, damping: 0.022 };
     cell.arc.refuse_slowdown = false;
     cell.vibration = Vibration::try_new(Prefilter::FirZvd, 0.5e-3, vec![mode]).unwrap();
-    let bench = weld(&cell);
-    let (arm, track) = (job(&cell).0, Track { on_path: 1e-4, ..track(&bench) });
+    pauses_behind_a_prefilter(&cell, 1e-4);
+    cell.vibration = cell.vibration.acting_on(ActsOn::Feedrate);
+    pauses_behind_a_prefilter(&cell, 1e-6);
+}
+
+fn pauses_behind_a_prefilter(cell: &Cell, on_path: f64) {
+    let bench = weld(cell);
+    let (arm, track) = (job(cell).0, Track { on_path, ..track(&bench) });
     let (mut welding, mut worst) = (0, 0.0_f64);
     at_random_instants(&bench, &track, &mut Random(9), 60, |k, ride, random| {
         let burned = ride.burned;

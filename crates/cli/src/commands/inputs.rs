@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
+use seamline::control::ActsOn;
 use seamline::vibration::Prefilter;
 use seamline_cell::cell::Cell;
 use seamline_cell::plan::CellArm;
@@ -16,10 +17,14 @@ pub(crate) struct CellArguments {
     /// Cell file (TOML), or a built-in cell (default, scara); without it the default.
     #[arg(long = "cell", value_name = "NAME|F.toml")]
     source: Option<PathBuf>,
-    /// Prefilter on the joint commands, made for the cell's flexible modes, in place of the cell's own: none, zv, zvd, fir, fir-zv,
+    /// Prefilter, made for the cell's flexible modes, in place of the cell's own: none, zv, zvd, fir, fir-zv,
     /// fir-zvd, mzv, ei, 2hump-ei, 3hump-ei.
     #[arg(long, value_name = "NAME", value_parser = prefilter)]
     prefilter: Option<Prefilter>,
+    /// What the prefilter acts on, in place of what the cell says: joints (paths and corners are left a little) or feedrate (the tool stays on
+    /// its path).
+    #[arg(long = "prefilter-on", value_name = "WHAT", value_parser = acts_on)]
+    acts_on: Option<ActsOn>,
 }
 
 impl CellArguments {
@@ -30,6 +35,9 @@ impl CellArguments {
                 anyhow!("--prefilter {}: expected {error}", prefilter.name().to_lowercase())
             })?;
         }
+        if let Some(acts_on) = self.acts_on {
+            cell.vibration = cell.vibration.acting_on(acts_on);
+        }
         Ok(cell)
     }
 
@@ -39,6 +47,14 @@ impl CellArguments {
             Some(cell) => Ok(cell?),
             None => Ok(Cell::load(path)?),
         }
+    }
+}
+
+fn acts_on(text: &str) -> Result<ActsOn, String> {
+    match text {
+        "joints" => Ok(ActsOn::Joints),
+        "feedrate" => Ok(ActsOn::Feedrate),
+        _ => Err("expected joints or feedrate".into()),
     }
 }
 

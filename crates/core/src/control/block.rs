@@ -181,10 +181,19 @@ impl PathMotion {
     /// The flange's motion in programme time at a time since the block's start.
     #[must_use]
     pub fn flange(&self, time: f64) -> PoseJet {
-        let state = self.state(time);
-        let tcp = self.path.jet(state.position).in_time([state.velocity, state.acceleration, state.jerk]);
-        tcp.attached(&self.tcp_from_flange)
+        flange_on(&self.path, &self.tcp_from_flange, &self.state(time))
     }
+
+    /// Flange in the tool's frame.
+    pub(super) fn tcp_from_flange(&self) -> &Pose {
+        &self.tcp_from_flange
+    }
+}
+
+/// The flange's motion where the tool centre point moves along a path in a certain state.
+pub(super) fn flange_on(path: &Path, tcp_from_flange: &Pose, state: &PathState) -> PoseJet {
+    let tcp = path.jet(state.position).in_time([state.velocity, state.acceleration, state.jerk]);
+    tcp.attached(tcp_from_flange)
 }
 
 impl<const N: usize> Block<N> {

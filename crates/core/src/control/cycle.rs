@@ -4,11 +4,12 @@ use super::arc::{Arc, ArcRules};
 use super::feedback::{Observer, ServoModel};
 use super::mode::{Event, Mode};
 use super::off_path::OffPath;
-use super::prefilter::{JointPrefilter, PrefilterEntry, Progress};
-use super::program::{Arm, CommandSource, Follows, Program};
+use super::prefilter::{ActsOn, JointPrefilter, PrefilterEntry, Progress};
+use super::program::{Arm, CommandSource, Follows, Program, joints_of};
 use super::rate::RateLimits;
 use super::resume::Resume;
 use super::telemetry::{CycleOutput, StageClock, Status};
+use super::track::{OnTrack, TRACK_MOVES};
 use super::trail::Mark;
 use crate::arc::ArcCommand;
 use crate::drive::{DriveFault, JointCommand};
@@ -363,7 +364,7 @@ where
             return;
         }
         let wanted = match &mut self.off_path {
-            None if self.on_path => joints.map(|jet| self.shaped(&jet)),
+            None if self.on_path => joints.and_then(|jet| self.shaped(&jet)),
             None => Ok(JointCommand::at_rest(self.command.position)),
             Some(way) => Ok(way.step(self.config.period)),
         };
@@ -394,11 +395,22 @@ where
     }
 
     /// The command in real time, as the prefilters let it through.
-    fn shaped(&mut self, jet: &JointJet<N>) -> JointCommand<N> {
+    fn shaped(&mut self, jet: &JointJet<N>) -> Result<JointCommand<N>, Fault> {
         let command = self.in_time(jet);
         let shaped = self.prefilter.update(&command, &self.progress());
         (self.mark, self.tool_way, self.rate) = (shaped.mark, shaped.tool_way, shaped.rate);
-        shaped.command
+        if self.prefilter.acts_on() != Some(ActsOn::Feedrate) {
+            return Ok(shaped.command);
+        }
+        match self.program.on_course(shaped.course) {
+            OnTrack::Joints => Ok(shaped.command),
+            OnTrack::Path(flange) => {
+                let JointJet { position, velocity, acceleration, .. } =
+                    joints_of(&flange, &self.command.position, &self.kinematics)?;
+                Ok(JointCommand { position, velocity, acceleration })
+            }
+            OnTrack::Forgotten => Err(Fault::TrackForgotten { moves: TRACK_MOVES }),
+        }
     }
 
     /// Where the program is.

@@ -9,7 +9,7 @@
 //! | 1 feedback | holds the measured joints against the drives' model, filters them | following error, drive |
 //! | 2 target | lets programme time run on, within what the joints bear | queue ran empty |
 //! | 3 kinematics | joints and their derivatives at that instant | no inverse |
-//! | | [prefilters](JointPrefilter), where the cell has them: the joint commands that do not make the arm ring | |
+//! | | [prefilters](JointPrefilter), where the cell has them: the joint commands, or a feedrate, that do not make the arm ring | |
 //! | 4 safety | judges the command by its differences; stops the arm instead where it would leave the envelope | limits |
 
 mod arc;
@@ -26,6 +26,7 @@ mod rate;
 mod resume;
 mod retreat;
 mod telemetry;
+mod track;
 mod trail;
 
 pub use arc::ArcRules;
@@ -33,6 +34,7 @@ pub use block::{BLOCK_PIECES, Block, Command, Motion, PathMotion, TrajectoryMoti
 pub use cycle::{Cycle, CycleConfig, CycleInput};
 pub use feedback::ServoModel;
 pub use mode::{Event, Mode};
-pub use prefilter::{JointPrefilter, JointSignal, MODES_MAX, PrefilterEntry};
+pub use prefilter::{ActsOn, JointPrefilter, JointSignal, MODES_MAX, PrefilterEntry};
 pub use program::CommandSource;
 pub use telemetry::{CycleOutput, NoClock, STAGES, StageClock, Status};
+pub use track::TRACK_MOVES;

@@ -18,8 +18,8 @@ pub struct JointSignal<const N: usize> {
     position: [f64; N],
     velocity: [f64; N],
     acceleration: [f64; N],
-    /// Path that runs on with real time.
-    course: f64,
+    /// Path that runs on with real time, its velocity and acceleration.
+    course: [f64; 3],
     /// Way of the tool along its paths since the program's start.
     tool_way: f64,
     /// Rate of programme time.
@@ -31,7 +31,7 @@ impl<const N: usize> Signal for JointSignal<N> {
         position: [0.0; N],
         velocity: [0.0; N],
         acceleration: [0.0; N],
-        course: 0.0,
+        course: [0.0; 3],
         tool_way: 0.0,
         rate: 0.0,
     };
@@ -41,7 +41,7 @@ impl<const N: usize> Signal for JointSignal<N> {
         self.position.add(share, &other.position);
         self.velocity.add(share, &other.velocity);
         self.acceleration.add(share, &other.acceleration);
-        self.course += share * other.course;
+        self.course.add(share, &other.course);
         self.tool_way += share * other.tool_way;
         self.rate += share * other.rate;
     }
@@ -60,13 +60,27 @@ impl<const N: usize> Signal for JointSignal<N> {
 #[derive(Debug, Clone)]
 pub struct JointPrefilter<const N: usize, M> {
     stages: [Option<PrefilterStage<JointSignal<N>, M>>; MODES_MAX],
+    acts_on: ActsOn,
     trail: Trail,
+}
+
+/// What prefilters act on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ActsOn {
+    /// The joint commands: they keep all joint limits by themselves, and leave paths that are curved in the joints.
+    #[default]
+    Joints,
+    /// The feedrate: the tool stays on its path. That joint limits hold then is the planner's task: what a block permits along its path
+    /// must suit every place that the tool is at while the program is in the block. A move of the joints is as on the joint commands.
+    Feedrate,
 }
 
 /// What comes out of the prefilters in a cycle.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shaped<const N: usize> {
     pub(super) command: JointCommand<N>,
+    /// How far the course has come, its velocity and acceleration.
+    pub(super) course: [f64; 3],
     /// The place of the program that the arm has come to, the way of the tool up to there, and the rate at which it goes on.
     pub(super) mark: Mark,
     pub(super) tool_way: f64,
@@ -77,9 +91,9 @@ pub(super) struct Shaped<const N: usize> {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Progress {
     pub(super) mark: Mark,
-    /// Course at which the mark was set, and now.
+    /// Course at which the mark was set, and now, with its velocity and acceleration.
     pub(super) since: f64,
-    pub(super) course: f64,
+    pub(super) course: [f64; 3],
     pub(super) tool_way: f64,
     pub(super) rate: f64,
 }
@@ -88,7 +102,8 @@ impl<const N: usize, M> JointPrefilter<N, M> {
     /// None: the commands stay as they are.
     #[must_use]
     pub fn none() -> Self {
-        Self { stages: [const { None }; MODES_MAX], trail: Trail::at(Mark::default()) }
+        let trail = Trail::at(Mark::default());
+        Self { stages: [const { None }; MODES_MAX], acts_on: ActsOn::Joints, trail }
     }
 }
 
@@ -106,6 +121,17 @@ impl<const N: usize, M: AsRef<[PrefilterEntry<N>]> + AsMut<[PrefilterEntry<N>]>>
         Ok(prefilter)
     }
 
+    /// The same on something else.
+    #[must_use]
+    pub fn acting_on(self, acts_on: ActsOn) -> Self {
+        Self { acts_on, ..self }
+    }
+
+    /// What they act on; `None` where there are none.
+    pub(super) fn acts_on(&self) -> Option<ActsOn> {
+        (!self.is_none()).then_some(self.acts_on)
+    }
+
     /// Nothing is held back.
     pub(super) fn is_none(&self) -> bool {
         self.stages.iter().all(Option::is_none)
@@ -119,6 +145,7 @@ impl<const N: usize, M: AsRef<[PrefilterEntry<N>]> + AsMut<[PrefilterEntry<N>]>>
     /// At rest at a position, where the program is.
     pub(super) fn reset(&mut self, position: [f64; N], progress: &Progress) {
         let Progress { mark, course, tool_way, rate, .. } = *progress;
+        let course = [course[0], 0.0, 0.0];
         let signal = JointSignal { position, course, tool_way, rate, ..JointSignal::ZERO };
         self.stages.iter_mut().flatten().for_each(|stage| stage.reset(&signal));
         self.trail.reset(mark);
@@ -128,7 +155,7 @@ impl<const N: usize, M: AsRef<[PrefilterEntry<N>]> + AsMut<[PrefilterEntry<N>]>>
     pub(super) fn update(&mut self, command: &JointCommand<N>, progress: &Progress) -> Shaped<N> {
         let Progress { mark, since, course, tool_way, rate } = *progress;
         if self.is_none() {
-            return Shaped { command: *command, mark, tool_way, rate };
+            return Shaped { command: *command, course, mark, tool_way, rate };
         }
         let JointCommand { position, velocity, acceleration } = *command;
         let mut signal = JointSignal { position, velocity, acceleration, course, tool_way, rate };
@@ -137,6 +164,6 @@ impl<const N: usize, M: AsRef<[PrefilterEntry<N>]> + AsMut<[PrefilterEntry<N>]>>
         }
         let JointSignal { position, velocity, acceleration, course, tool_way, rate } = signal;
         let command = JointCommand { position, velocity, acceleration };
-        Shaped { command, mark: self.trail.pass(mark, since, course), tool_way, rate }
+        Shaped { command, course, mark: self.trail.pass(mark, since, course[0]), tool_way, rate }
     }
 }

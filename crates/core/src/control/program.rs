@@ -4,8 +4,9 @@ use super::block::{Block, Command, Motion};
 use super::history::{Done, History};
 use super::lookahead::{AlongPath, JointMotion, Lookahead};
 use super::rate::{Rate, RateLimits};
+use super::track::{OnTrack, Track};
 use super::trail::{Mark, Way};
-use crate::geometry::Pose;
+use crate::geometry::{Pose, PoseJet};
 use crate::kinematics::{JointJet, Kinematics};
 use crate::path::{Measure, PathState};
 use crate::safety::Fault;
@@ -35,6 +36,8 @@ pub(super) struct Program<const N: usize> {
     /// A move has come to its end at rest, and the arm has yet to come to it.
     pub(super) arriving: bool,
     pub(super) done: History<N>,
+    /// What the moves done ran along.
+    track: Track,
     /// Programme time runs backward; the look-ahead then counts from the time given down.
     pub(super) backward: Option<f64>,
     /// Way of the tool at which the arc was last lit.
@@ -88,6 +91,7 @@ impl<const N: usize> Program<N> {
             way_before: Way::default(),
             arriving: false,
             done: History::new(),
+            track: Track::new(),
             backward: None,
             arc_way: 0.0,
             dwell_left: None,
@@ -185,9 +189,10 @@ impl<const N: usize> Program<N> {
                 let (rests, way) = (block.ends_at_rest, way_on(block, block.duration()));
                 // Exactly where the move ends, however the cycles fell.
                 let position = joints_on(block, block.duration(), &self.position, kinematics)?.position;
+                let way_after = self.way_before.plus(way);
                 self.done.push(Done { start: self.move_start, way: self.way_before, block: *block });
-                (self.position, self.move_start) = (position, end);
-                self.way_before = self.way_before.plus(way);
+                self.track.lay(block, self.way_before.path, way_after.path);
+                (self.position, self.move_start, self.way_before) = (position, end, way_after);
                 self.arriving = rests && arm.motion != Follows::AtOnce;
                 self.pop(goal);
                 if self.arriving || !self.moves_on() {
@@ -258,10 +263,22 @@ impl<const N: usize> Program<N> {
         self.under_way(self.now).map_or(before, |(start, block)| before.plus(way_on(block, self.now - start)))
     }
 
-    /// Path that runs on with real time, whichever way programme time runs, and where what the place says began on it.
-    pub(super) fn course(&self) -> (f64, f64) {
+    /// Path that runs on with real time, whichever way programme time runs, with its velocity and acceleration; and where what the
+    /// place says began on it.
+    pub(super) fn course(&self) -> ([f64; 3], f64) {
         let (way, (before, after)) = (self.way().path, self.way_under_way());
-        if self.backward.is_some() { (-way, -after.path) } else { (way, before.path) }
+        let along = self
+            .under_way(self.now)
+            .map_or(AlongPath::NONE, |(start, block)| along_path(block, self.now - start));
+        let (rate, slope) = self.time_rate();
+        let way = [way, along.velocity * rate, along.acceleration * rate * rate + along.velocity * slope];
+        if self.backward.is_some() { (way.map(|x| -x), -after.path) } else { (way, before.path) }
+    }
+
+    /// What the program has at a place of its course that it has passed, with the course's velocity and acceleration.
+    pub(super) fn on_course(&self, course: [f64; 3]) -> OnTrack {
+        let way = if self.backward.is_some() { course.map(|x| -x) } else { course };
+        self.track.at(way, self.head_move().map(|block| (self.way_before.path, block)))
     }
 
     /// Path covered up to the start of the move under way, and up to its end.
@@ -476,13 +493,19 @@ fn joints_on<const N: usize, K: Kinematics<N>>(
             let (position, velocity) = (state.position, state.velocity);
             Ok(JointJet { position, velocity, acceleration: state.acceleration, jerk: state.jerk })
         }
-        Motion::Path(motion) => {
-            let flange = motion.flange(time);
-            let inverse = |flange: &crate::geometry::PoseJet| {
-                let q = kinematics.inverse_nearest(&flange.pose, seed)?;
-                kinematics.joint_jet(flange, &q)
-            };
-            inverse(&flange).map_err(|_| Fault::NoInverse { position: flange.pose.translation.vector })
-        }
+        Motion::Path(motion) => joints_of(&motion.flange(time), seed, kinematics),
     }
+}
+
+/// The joints where the flange moves like this, on the branch nearest to `seed`.
+pub(super) fn joints_of<const N: usize, K: Kinematics<N>>(
+    flange: &PoseJet,
+    seed: &[f64; N],
+    kinematics: &K,
+) -> Result<JointJet<N>, Fault> {
+    let inverse = || {
+        let q = kinematics.inverse_nearest(&flange.pose, seed)?;
+        kinematics.joint_jet(flange, &q)
+    };
+    inverse().map_err(|_| Fault::NoInverse { position: flange.pose.translation.vector })
 }

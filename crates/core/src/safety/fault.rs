@@ -68,6 +68,11 @@ pub enum Fault {
     },
     /// The queue ran empty in the middle of a motion.
     Starved,
+    /// More moves than the cycle remembers lie within the length of the prefilters on the feedrate.
+    TrackForgotten {
+        /// How many it remembers.
+        moves: usize,
+    },
     /// The drives do not answer or report a fault.
     Drive(DriveFault),
     /// The cycle was late more often in a row than permitted.
@@ -118,7 +123,8 @@ impl Fault {
             | Self::Workspace { .. }
             | Self::NotFinite { .. }
             | Self::NoInverse { .. }
-            | Self::Starved => StopCategory::Category1,
+            | Self::Starved
+            | Self::TrackForgotten { .. } => StopCategory::Category1,
         }
     }
 }

@@ -196,7 +196,8 @@ impl<S: Signal, M: AsRef<[StageEntry<S>]> + AsMut<[StageEntry<S>]>> PrefilterSta
     pub fn update(&mut self, command: &S) -> S {
         self.take(command);
         if self.is_drained() {
-            // What the sum below gives but for rounding.
+            // What the sum below gives but for rounding; from here on the differences in the ring are small again.
+            self.reset(command);
             return *command;
         }
         let mut output = self.origin;

@@ -243,6 +243,10 @@ const MISTAKES: &[(&str, &str)] = &[
         "cell.toml:2:13: vibration.prefilter: found \"FIR\", expected \"none\", \"zv\", \"zvd\", \"fir\", \"fir-zv\", \"fir-zvd\", \"mzv\", \"ei\", \"2hump-ei\" or \"3hump-ei\"",
     ),
     (
+        "[vibration]\non = \"speed\"\n",
+        "cell.toml:2:6: vibration.on: found \"speed\", expected \"joints\" or \"feedrate\"",
+    ),
+    (
         "[vibration]\nprefilter = \"zv\"\n",
         "cell.toml:2:13: vibration.prefilter: found \"zv\", expected a [[flexible_mode]] to make the prefilter for",
     ),

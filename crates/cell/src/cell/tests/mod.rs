@@ -99,7 +99,7 @@ fn every_key_of_the_default_has_an_effect() {
         assert!(effective, "{header}{line}: no other value changes the cell");
         tried += 1;
     }
-    assert_eq!(tried, 170);
+    assert_eq!(tried, 171);
 }
 
 /// Values of the same type to put in place of one in the default file.

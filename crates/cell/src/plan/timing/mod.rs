@@ -131,6 +131,22 @@ pub struct PathLimits {
 }
 
 impl PathLimits {
+    /// Of the speed only; the others are infinite.
+    #[must_use]
+    pub fn of_speed(speed: f64) -> Self {
+        Self { speed, acceleration: f64::INFINITY, jerk: f64::INFINITY }
+    }
+
+    /// The lesser ones of both.
+    #[must_use]
+    pub fn and(&self, other: &Self) -> Self {
+        Self {
+            speed: self.speed.min(other.speed),
+            acceleration: self.acceleration.min(other.acceleration),
+            jerk: self.jerk.min(other.jerk),
+        }
+    }
+
     /// As [of joints](TimingLimits::with_room); the speed stays.
     #[must_use]
     pub fn with_room(&self) -> Self {
