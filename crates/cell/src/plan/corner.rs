@@ -68,17 +68,17 @@ pub(super) fn lost_time(
     passing.lost(&passing.pass(smear, &[Bend::default(); 2], arc), speed)
 }
 
-/// Whether a blend costs more time than to stop at the point, with limits along it and at the greatest speed next to it: then it is so sharp
-/// that it is passed at next to no speed.
+/// Whether a blend costs more time than to stop at the point, with limits along it, beside moves of which the slower one has this speed: then it
+/// is so sharp that it is passed at next to no speed.
 pub(super) fn takes_longer_than_a_stop(
     blend: &Blend,
     limits: &PathLimits,
-    fastest: f64,
+    slower: f64,
     smear: Option<Smear>,
 ) -> bool {
-    let round = blend.path.length() / limits.speed;
-    let stop = 2.0 * (fastest / limits.acceleration + limits.acceleration / limits.jerk);
-    round > stop + smear.map_or(0.0, |smear| smear.length)
+    let lost = blend.path.length() * (1.0 / limits.speed - 1.0 / slower);
+    let stop = slower / limits.acceleration + limits.acceleration / limits.jerk;
+    lost > stop + smear.map_or(0.0, |smear| smear.length)
 }
 
 /// The gentler limits of both neighbours, as slow as the corner asks for: `permitted` is what the cell permits to either.

@@ -161,7 +161,8 @@ impl<const N: usize> Run<N> {
             return Ok(());
         };
         let lengths = [last.link.path.length(), link.path.length()];
-        let speed = last.limits.speed.max(link.limits.speed);
+        let (speed, slower) =
+            (last.limits.speed.max(link.limits.speed), last.limits.speed.min(link.limits.speed));
         let permitted = USED * last.link.pass.unwrap_or(0.0);
         let of_both = [&last.link.permitted, &link.permitted];
         let blend = |error| passing([&last.path, &link.path], lengths, speed, error);
@@ -181,7 +182,7 @@ impl<const N: usize> Run<N> {
             corner = blends.min_by(|a, b| lost(a).total_cmp(&lost(b))).unwrap_or(corner);
         }
         let limits = limits(&corner, of_both);
-        if takes_longer_than_a_stop(&corner, &limits, speed, self.smear) {
+        if takes_longer_than_a_stop(&corner, &limits, slower, self.smear) {
             return Err(Stops("going round it would take longer than a stop"));
         }
         last.path = corner.before;

@@ -278,7 +278,12 @@ impl<const N: usize> Program<N> {
     /// What the program has at a place of its course that it has passed, with the course's velocity and acceleration.
     pub(super) fn on_course(&self, course: [f64; 3]) -> OnTrack {
         let way = if self.backward.is_some() { course.map(|x| -x) } else { course };
-        self.track.at(way, self.head_move().map(|block| (self.way_before.path, block)))
+        // Also where the arm has yet to come to rest: going back, it comes from there.
+        let head = match self.head() {
+            Some(Command::Move(block)) => Some((self.way_before.path, block)),
+            _ => None,
+        };
+        self.track.at(way, head)
     }
 
     /// Path covered up to the start of the move under way, and up to its end.

@@ -117,6 +117,7 @@ fn other_values(value: &str) -> Vec<String> {
         "on",
         "stop",
         "zv",
+        "feedrate",
     ];
     match value {
         "true" => vec!["false".into()],
