@@ -8,7 +8,9 @@ use seamline::control::Mode;
 use seamline::geometry::{Pose, Vector3};
 use seamline::kinematics::JointKind;
 use seamline::path::Path;
-use seamline_cell::record::{Acceptance, JointInfo, Recorder, RunInfo, Sample, SegmentInfo, SegmentKind};
+use seamline_cell::record::{
+    Acceptance, JointInfo, OnSeam, Recorder, RunInfo, Sample, SegmentInfo, SegmentKind,
+};
 
 const ROWS: u32 = 2_000_000;
 
@@ -34,6 +36,7 @@ fn main() -> std::io::Result<()> {
     let (mut sender, recorder) = Recorder::start(&file, &run)?;
     let kind = SegmentKind::Path(path);
     recorder.segment(SegmentInfo {
+        seam: OnSeam::No,
         segment: 1,
         line: 1,
         kind,

@@ -26,6 +26,12 @@ pub enum FaultKind {
     NoIgnition,
     /// The arc goes out.
     ArcLoss,
+    /// The seam sensor gives no readings.
+    SensorSilent,
+    /// The seam sensor gives no numbers.
+    SensorNan,
+    /// The seam sensor's readings jump aside.
+    SensorJump,
 }
 
 /// A fault with its time.
@@ -41,7 +47,7 @@ pub struct ScriptedFault {
 
 impl FaultKind {
     /// All kinds with their words in cell files and on the command line.
-    pub const ALL: [(&'static str, Self); 10] = [
+    pub const ALL: [(&'static str, Self); 13] = [
         ("drive-silent", Self::DriveSilent),
         ("drive-alarm", Self::DriveAlarm),
         ("joint-stuck", Self::JointStuck),
@@ -52,6 +58,9 @@ impl FaultKind {
         ("planner-silent", Self::PlannerSilent),
         ("no-ignition", Self::NoIgnition),
         ("arc-loss", Self::ArcLoss),
+        ("sensor-silent", Self::SensorSilent),
+        ("sensor-nan", Self::SensorNan),
+        ("sensor-jump", Self::SensorJump),
     ];
 
     /// The kind with this word.

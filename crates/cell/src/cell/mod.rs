@@ -17,6 +17,7 @@ mod job_rules;
 mod motion;
 mod nearest;
 mod robot;
+mod seam;
 mod section;
 mod sensor;
 mod simulation;
@@ -38,7 +39,7 @@ pub use robot::{
     BuiltInRobot, DhConvention, DhRow, DhTable, JOINTS_MAX, Joint, JointKind, OpwParameters, Robot,
     RobotModel, UrdfSource,
 };
-pub use sensor::{LostSeam, SeamFilter, Sensor};
+pub use sensor::{EgmAddresses, LostSeam, SeamFilter, Sensor, SensorSource, Tack};
 pub use simulation::{LaserErrors, Simulation};
 pub use vibration::{FlexibleMode, Vibration, VibrationError};
 pub use welding::{ArcEnd, ArcPolicy, ArcStart, Weave, WeavePattern, WeaveRate, WeaveSide};
@@ -148,7 +149,7 @@ impl Cell {
             arc_ends: numbered(&mut root, "arc_end", 1..=9999, ArcEnd::read)?,
             weaves: numbered(&mut root, "weave", 1..=9999, Weave::read)?,
             arc: ArcPolicy::read(root.section("arc")?)?,
-            sensor: Sensor::read(root.section("sensor")?)?,
+            sensor: Sensor::read(root.section("sensor")?, folder)?,
             vibration: Vibration::read(
                 numbered(&mut root, "flexible_mode", 1..=9, |_, table| FlexibleMode::read(table))?,
                 root.section("vibration")?,

@@ -1,5 +1,6 @@
 //! Checked reading of one table: every value with its unit and range, every key accounted for.
 
+use std::net::SocketAddr;
 use std::ops::RangeInclusive;
 
 use super::document::{Document, Entry, Node, Origin, Sources, Span, Table, Value};
@@ -237,6 +238,16 @@ impl<'a> Section<'a> {
             Value::Text(text) if !text.is_empty() => Ok(text.clone()),
             _ => Err(self.unexpected(key, expected)),
         }
+    }
+
+    /// An IP address with its port.
+    pub(super) fn address(&mut self, key: &'static str) -> Result<SocketAddr, CellError> {
+        let expected = "an address with a port, such as \"127.0.0.1:6510\"";
+        let address = match &self.require(key, expected)?.value {
+            Value::Text(text) => text.parse().ok(),
+            _ => None,
+        };
+        address.ok_or_else(|| self.unexpected(key, expected))
     }
 
     /// Like [`text`](Self::text), where the key may be absent.

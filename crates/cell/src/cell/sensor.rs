@@ -1,11 +1,18 @@
 //! The seam sensor.
 
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+
 use super::error::CellError;
 use super::section::{Section, Unit};
 
 /// A laser seam sensor at the torch, and what becomes of its readings. SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Sensor {
+    /// Where readings come from.
+    pub source: SensorSource,
+    /// Addresses for readings over EGM.
+    pub egm: EgmAddresses,
     /// Readings per second.
     pub rate_hz: f64,
     /// Seconds from exposure to delivery.
@@ -28,6 +35,43 @@ pub struct Sensor {
     pub trend: f64,
     /// What comes after the trend.
     pub lost: LostSeam,
+    /// What tells a tack weld from the seam.
+    pub tack: Tack,
+}
+
+/// Where readings come from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum SensorSource {
+    /// There is no sensor.
+    None,
+    /// A simulated laser on a simulated seam.
+    Simulated,
+    /// A recording.
+    Replay(PathBuf),
+    /// A client that speaks EGM.
+    Egm,
+}
+
+/// Addresses for readings over EGM.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EgmAddresses {
+    /// What the controller binds.
+    pub listen: SocketAddr,
+    /// Where the client is.
+    pub client: SocketAddr,
+}
+
+/// What tells a tack weld from the seam. Zero never does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tack {
+    /// Rise of the height above its trend.
+    pub rise: f64,
+    /// Gap below this.
+    pub gap: f64,
+    /// Quality below this.
+    pub quality: f64,
+    /// What lasts longer is the seam.
+    pub longest: f64,
 }
 
 /// How readings become a correction.
@@ -52,7 +96,10 @@ pub enum LostSeam {
 }
 
 impl Sensor {
-    pub(super) fn read(mut section: Section<'_>) -> Result<Self, CellError> {
+    pub(super) fn read(mut section: Section<'_>, folder: &Path) -> Result<Self, CellError> {
+        let source = read_source(&mut section, folder)?;
+        let egm =
+            EgmAddresses { listen: section.address("egm_listen")?, client: section.address("egm_client")? };
         let rate_hz = section.number("rate_hz", Unit::Plain, 1.0..=10_000.0)?;
         let latency = section.number("latency_ms", Unit::Milli, 0.0..=1000.0)?;
         let look_ahead = section.number("look_ahead_mm", Unit::Milli, 0.0..=500.0)?;
@@ -63,6 +110,8 @@ impl Sensor {
         let mean = section.integer("mean_readings", 1..=1000)?;
         let filters = [("regression", SeamFilter::Regression), ("mean", SeamFilter::Mean { readings: mean })];
         let sensor = Self {
+            source,
+            egm,
             rate_hz,
             latency,
             look_ahead,
@@ -75,8 +124,37 @@ impl Sensor {
             trend: section.number("trend_mm", Unit::Milli, 0.0..=1000.0)?,
             lost: section
                 .choice("lost_seam", &[("stop", LostSeam::Stop), ("taught_path", LostSeam::TaughtPath)])?,
+            tack: Tack {
+                rise: section.number("tack_rise_mm", Unit::Milli, 0.0..=100.0)?,
+                gap: section.number("tack_gap_mm", Unit::Milli, 0.0..=100.0)?,
+                quality: section.number("tack_quality", Unit::Plain, 0.0..=1.0)?,
+                longest: section.number("tack_longest_mm", Unit::Milli, 0.1..=500.0)?,
+            },
         };
         section.finish()?;
         Ok(sensor)
     }
+}
+
+fn read_source(section: &mut Section<'_>, folder: &Path) -> Result<SensorSource, CellError> {
+    /// As the file names them.
+    #[derive(Clone, Copy, PartialEq)]
+    enum Kind {
+        None,
+        Simulated,
+        Replay,
+        Egm,
+    }
+    let kinds =
+        [("none", Kind::None), ("simulated", Kind::Simulated), ("replay", Kind::Replay), ("egm", Kind::Egm)];
+    let kind = section.choice("source", &kinds)?;
+    // A file may name a recording that is not used at the moment.
+    let file = section.optional_text("replay_file")?;
+    Ok(match (kind, file) {
+        (Kind::None, _) => SensorSource::None,
+        (Kind::Simulated, _) => SensorSource::Simulated,
+        (Kind::Egm, _) => SensorSource::Egm,
+        (Kind::Replay, Some(file)) => SensorSource::Replay(folder.join(file)),
+        (Kind::Replay, None) => return Err(section.missing("replay_file", "the recording that is replayed")),
+    })
 }

@@ -2,7 +2,9 @@
 
 use super::error::CellError;
 use super::fault::ScriptedFault;
+use super::seam;
 use super::section::{Section, Unit};
+use crate::sensor::SeamFeature;
 
 /// What the simulated drives and the simulated sensor add to the ideal. SI.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +23,8 @@ pub struct Simulation {
     pub arc_misfire: f64,
     /// The simulated laser's errors.
     pub laser: LaserErrors,
+    /// What the simulated seam does beside the taught path.
+    pub seam: Vec<SeamFeature>,
     /// What goes wrong in a run, by ascending time.
     pub faults: Vec<ScriptedFault>,
 }
@@ -57,6 +61,7 @@ impl Simulation {
                 spike_probability: section.number("laser_spike_percent", Unit::Percent, 0.0..=100.0)?,
                 dropout_probability: section.number("laser_dropout_percent", Unit::Percent, 0.0..=100.0)?,
             },
+            seam: seam::read_all(&mut section)?,
             faults: ScriptedFault::read_all(&mut section, joints)?,
         };
         section.finish()?;

@@ -57,8 +57,6 @@ const OTHERS: &[(&str, Disposition)] = &[
     ("CHR$", STRINGS),
     ("CLEAR", REPORTED),
     ("CLS", REPORTED),
-    ("COMARCOF", refused("seam tracking through the arc is not built")),
-    ("COMARCON", refused("seam tracking through the arc is not built")),
     ("CWAIT", Accepted("no instruction runs ahead of a move")),
     ("DI", Accepted("there are no interrupt jobs")),
     ("DIALOG", OPERATOR),
@@ -167,7 +165,11 @@ fn of_data(data: &Data) -> Disposition {
 
 fn of_weld(weld: &Weld) -> Disposition {
     match weld {
-        Weld::WeaveOn(_) | Weld::WeaveOff => Executed,
+        Weld::WeaveOn(_) | Weld::WeaveOff | Weld::TrackOff => Executed,
+        Weld::TrackOn(tags) if tags.is_empty() => Executed,
+        Weld::TrackOn(_) => Accepted(
+            "its tags are those of tracking through the arc and have no effect: the cell's seam sensor is followed",
+        ),
         Weld::ArcOn(tags) | Weld::ArcOff(tags) | Weld::ArcSet(tags) if tags.other_tags.is_empty() => Executed,
         Weld::ArcOn(_) | Weld::ArcOff(_) | Weld::ArcSet(_) => {
             Accepted("tags of the power source, such as RETRY, have no effect")

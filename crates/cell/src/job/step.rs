@@ -51,6 +51,10 @@ pub enum Action {
     WeaveOn(WeaveCondition),
     /// Weave no longer.
     WeaveOff,
+    /// Track the seam from here on.
+    TrackOn,
+    /// Track it no longer.
+    TrackOff,
     /// Stand still.
     Dwell {
         /// How long.

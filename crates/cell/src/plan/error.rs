@@ -145,6 +145,9 @@ pub enum Problem {
         /// The prefilter's length.
         seconds: f64,
     },
+    /// A seam that cannot be tracked.
+    #[error("{0}")]
+    Track(String),
     /// The generator gives no motion.
     #[error("no motion to {name}: {reason}")]
     Generator {

@@ -16,7 +16,7 @@ use super::smear;
 use super::suggest::Trouble;
 use super::timing::{Course, JointPath as _, PathLimits, Stretch, TimingError, TimingLimits, time_path};
 use crate::job::{Action, Location, Step};
-use crate::record::SegmentKind;
+use crate::record::{OnSeam, SegmentKind};
 
 /// A look ahead that settles nothing is repeated with one this many times as far.
 const WIDER: f64 = 2.0;
@@ -49,6 +49,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let passed = last.filter(|(_, pass)| pass.is_some()).map(|(step, _)| step.clone());
         self.end_joint_move(out);
         self.weave_run(out)?;
+        self.track_run()?;
         self.advance(true, out)?;
         if let (Some(Stops(why)), Some(Step { at, action: Action::Move(r#move), .. })) = (stop, passed) {
             let text = format!("the robot stops exactly on this point ({}): {why}", r#move.zone);
@@ -163,7 +164,12 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             planned.notices.extend(smear::off_weld(&piece));
         }
         planned.commands = self.blocks(&piece, part, from_rest);
-        planned.segment = Some(smear::lagging(&piece.info, &self.run));
+        let mut info = smear::lagging(&piece.info, &self.run);
+        if self.beside {
+            info.seam = OnSeam::Leaves;
+            self.beside = !whole;
+        }
+        planned.segment = Some(info);
         planned.duration = part.timing.iter().map(|piece| piece.duration).sum();
         if part.rests {
             planned.duration += self.run_out();
@@ -200,6 +206,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let block = |(k, (limits, pieces)): (usize, &(PathLimits, Vec<TimingPiece>))| {
             let along = (limits.acceleration, limits.jerk);
             let motion = PathMotion::new(piece.path, &self.tool.flange_from_tcp, along, pieces)?;
+            let motion = piece.tracked.map_or(motion, |tracked| motion.on_seam(tracked));
             Some(Command::Move(Block {
                 line: piece.info.line,
                 segment: piece.info.segment,

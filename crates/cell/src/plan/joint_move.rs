@@ -12,7 +12,7 @@ use super::resolve::{ToolPose, goal};
 use super::run::Stops;
 use super::{speed, tool_path, workspace};
 use crate::job::{Move, Speed, Step};
-use crate::record::{SegmentInfo, SegmentKind};
+use crate::record::{OnSeam, SegmentInfo, SegmentKind};
 
 /// Why the robot stops before a joint move.
 const BEFORE_JOINT_MOVE: &str = "a joint move follows";
@@ -49,6 +49,7 @@ impl<const N: usize> JointMove<N> {
             arc: self.arc,
             constant_part: None,
             rounded: [0.0; 2],
+            seam: OnSeam::No,
         }
     }
 

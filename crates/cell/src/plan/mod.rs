@@ -26,6 +26,7 @@ mod speed;
 mod suggest;
 pub mod timing;
 mod tool_path;
+mod track;
 mod weave;
 mod workspace;
 

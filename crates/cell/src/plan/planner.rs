@@ -13,11 +13,12 @@ use super::resolve::{self, Goal, ToolPose, goal};
 use super::run::{Link, Run, Stops};
 use super::speed;
 use super::tool_path;
+use super::track::Section;
 use super::weave::WeaveOrder;
 use super::workspace;
 use crate::cell::Cell;
 use crate::job::{Action, ArcCondition, ArcPart, Frame, Location, Move, MovePath, Step};
-use crate::record::{SegmentInfo, SegmentKind};
+use crate::record::{OnSeam, SegmentInfo, SegmentKind};
 
 /// A weave over more pieces of moves than these ends on the way and begins again.
 const LONGEST_WEAVE: usize = 2000;
@@ -74,6 +75,10 @@ pub struct Planner<'a, const N: usize, K> {
     pub(super) arc: bool,
     /// The weave that is on.
     pub(super) weave: Option<WeaveOrder>,
+    /// The next path begins beside where it was taught: a seam was tracked before it.
+    pub(super) beside: bool,
+    /// Where a seam is tracked.
+    pub(super) section: Option<Section<N>>,
     segment: u32,
     pub(super) run: Run<N>,
     /// A joint move that waits for the step after it; the run is empty then.
@@ -96,6 +101,8 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             tool,
             arc: false,
             weave: None,
+            beside: false,
+            section: None,
             segment: 0,
             run,
             held: None,
@@ -154,12 +161,18 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
     /// As [`Planner::take`]; then call it again.
     pub fn finish(&mut self, out: &mut Vec<Planned<N>>) -> Result<(), PlanError> {
         self.take_waiting(out)?;
-        self.end_run(None, out)
+        let mut parts = Vec::new();
+        let result = self.end_run(None, &mut parts);
+        self.pass_on(parts, true, out);
+        result
     }
 
     fn take_waiting(&mut self, out: &mut Vec<Planned<N>>) -> Result<(), PlanError> {
         while let Some(step) = self.waiting.front().cloned() {
-            self.take_first(&step, out)?;
+            let mut parts = Vec::new();
+            let result = self.take_first(&step, &mut parts);
+            self.pass_on(parts, false, out);
+            result?;
         }
         Ok(())
     }
@@ -236,6 +249,8 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             Action::ArcOff(condition) => self.arc_off(condition, &mut planned)?,
             Action::WeaveOn(condition) => self.weave = Some(WeaveOrder::try_new(condition, self.cell)?),
             Action::WeaveOff => self.weave = None,
+            Action::TrackOn => self.track_on()?,
+            Action::TrackOff => self.track_off(&mut planned),
             Action::Dwell { seconds } => self.dwell(*seconds, &mut planned),
             Action::Unsupported { text, reason } => {
                 return Err(Problem::Refused { text: text.clone(), reason: reason.clone() });
@@ -276,6 +291,7 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             arc: self.arc,
             constant_part: None,
             rounded: [0.0; 2],
+            seam: OnSeam::No,
         });
         planned.commands.push(Command::Dwell { line, segment, duration });
         planned.duration += duration;
@@ -338,6 +354,9 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         if link.path.length() == 0.0 {
             return self.take_move_without_way(&link, out);
         }
+        if let Some(stops) = self.corner_of_seam(&link.path) {
+            self.end_run(Some(stops), out)?;
+        }
         let rests = link.pass.is_none() || !link.travels();
         if !link.travels() && !self.run.is_empty() {
             self.end_run(Some(Stops("the next move turns on the spot")), out)?;
@@ -354,6 +373,7 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         match &self.weave {
             Some(_) if self.run.count() < LONGEST_WEAVE => Ok(()),
             Some(_) => self.end_run(Some(Stops("the weave is long enough")), out),
+            None if self.tracks() => Ok(()),
             None => self.advance(false, out),
         }
     }

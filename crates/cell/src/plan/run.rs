@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use seamline::control::ActsOn;
+use seamline::control::{ActsOn, Tracked};
 use seamline::geometry::Pose;
 use seamline::path::corner::Blend;
 use seamline::path::{Measure, Path, TimingPiece};
@@ -17,7 +17,7 @@ use super::smeared_corner::Pass;
 use super::timing::{PathLimits, Stretch};
 use crate::cell::Vibration;
 use crate::job::{Location, Step};
-use crate::record::{SegmentInfo, SegmentKind};
+use crate::record::{OnSeam, SegmentInfo, SegmentKind};
 
 /// Nominal time that one look ahead covers, in seconds. The timing settles what lies before the stop that it must assume at its end.
 const HORIZON: f64 = 1.0;
@@ -61,6 +61,8 @@ pub(super) struct Piece<const N: usize> {
     pub(super) begun: bool,
     /// Somewhere on it the speed is below the programmed one.
     slowed: bool,
+    /// Where it follows a tracked seam.
+    pub(super) tracked: Option<Tracked>,
     /// How far prefilters take the tool off it, as far as it has been looked at, in metres.
     pub(super) off: f64,
     /// Of a corner: how prefilters permit to pass it, where that is known.
@@ -115,6 +117,7 @@ impl<const N: usize> Link<N> {
             arc: self.arc,
             constant_part: None,
             rounded: [0.0; 2],
+            seam: OnSeam::No,
         }
     }
 
@@ -199,8 +202,20 @@ impl<const N: usize> Run<N> {
         let (mut info, limits) = (link.info(*segment), link.limits);
         info.rounded[0] = if offset > 0.0 { rounded(offset, limits.speed, self.rounding()) } else { 0.0 };
         let link = Arc::new(link.clone());
-        let (begun, slowed, off, cap, after) = (false, false, 0.0, None, Vec::new());
-        self.pieces.push_back(Piece { link, info, path, limits, offset, begun, slowed, off, cap, after });
+        let (begun, slowed, tracked, off, cap, after) = (false, false, None, 0.0, None, Vec::new());
+        self.pieces.push_back(Piece {
+            link,
+            info,
+            path,
+            limits,
+            offset,
+            begun,
+            slowed,
+            tracked,
+            off,
+            cap,
+            after,
+        });
     }
 
     /// A step that takes no time, when all moves so far are done.
@@ -218,6 +233,15 @@ impl<const N: usize> Run<N> {
     /// All of it.
     pub(super) fn pieces(&mut self) -> &mut [Piece<N>] {
         self.pieces.make_contiguous()
+    }
+
+    /// Has its pieces follow a seam, each as said: they are planned faster, since the torch is held to its speed along the seam.
+    pub(super) fn track(&mut self, tracked: &[Tracked]) {
+        for (piece, tracked) in self.pieces.iter_mut().zip(tracked) {
+            piece.tracked = Some(*tracked);
+            piece.limits.speed *= tracked.headroom;
+            piece.info.seam = OnSeam::Tracked;
+        }
     }
 
     /// How far the next timing is to look; `None` where more of the run must be known first.
@@ -362,6 +386,9 @@ impl<const N: usize> Run<N> {
         taken.after.clear();
         first.path = first.path.part(place, length);
         first.offset += place;
+        if let Some(tracked) = &mut first.tracked {
+            tracked.start += place;
+        }
         first.begun = true;
         Some((taken, false))
     }
@@ -420,8 +447,9 @@ impl<const N: usize> Piece<N> {
         };
         let info = SegmentInfo { segment, kind, speed: Some(limits.speed), constant_part: None, ..self.info };
         let after = std::mem::take(&mut self.after);
-        let (begun, slowed, off, cap) = (false, false, 0.0, None);
-        Self { link, info, path: *blend, limits, offset: length, begun, slowed, off, cap, after }
+        let (begun, slowed, tracked, off, cap) = (false, false, None, 0.0, None);
+        let offset = length;
+        Self { link, info, path: *blend, limits, offset, begun, slowed, tracked, off, cap, after }
     }
 
     /// From where to where the plan holds the programmed speed, with what this timing adds; in the coordinate of the link.

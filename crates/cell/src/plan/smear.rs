@@ -27,7 +27,7 @@ use super::run::{Piece, Run};
 use super::smeared_corner::Passing;
 use super::timing::{JointPath as _, PathLimits, Stretch};
 use crate::cell::Vibration;
-use crate::record::{SegmentInfo, SegmentKind};
+use crate::record::{OnSeam, SegmentInfo, SegmentKind};
 
 /// Places of a path that are looked at: this far apart, in metres and in radians of the tool's turn, and how many at least and at most.
 const SPACING: [f64; 2] = [5e-3, 0.02];
@@ -274,7 +274,9 @@ pub(super) fn lagging<const N: usize>(info: &SegmentInfo, run: &Run<N>) -> Segme
     }
     let (enter, leave) = (speed * (smear.length - smear.delay), speed * smear.delay);
     let constant_part = info.constant_part.map(|[from, to]| [from + enter, to - leave]);
-    SegmentInfo { constant_part: constant_part.filter(|[from, to]| from < to), ..*info }
+    // What corrects the seam is told where the program is, ahead of the arm.
+    let seam = if info.seam == OnSeam::Tracked { OnSeam::Leaves } else { info.seam };
+    SegmentInfo { constant_part: constant_part.filter(|[from, to]| from < to), seam, ..*info }
 }
 
 impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {

@@ -114,6 +114,17 @@ impl SegmentKind {
     }
 }
 
+/// What tracking a seam does to a segment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OnSeam {
+    /// Nothing.
+    No,
+    /// It follows the seam, beside the taught path.
+    Tracked,
+    /// It begins beside the taught path, where a seam was tracked before it.
+    Leaves,
+}
+
 /// One planned segment of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SegmentInfo {
@@ -130,6 +141,8 @@ pub struct SegmentInfo {
     /// From where to where on the path (m from its start) the plan holds the programmed speed: the end of acceleration
     /// and the start of deceleration. None where the speed is never reached.
     pub constant_part: Option<[f64; 2]>,
+    /// What tracking a seam does to it.
+    pub seam: OnSeam,
     /// Over how much of the path, from its start and from its end (m), prefilters round the corners there: what is off the path in
     /// these parts belongs to the corners.
     pub rounded: [f64; 2],

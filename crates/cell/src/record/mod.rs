@@ -23,7 +23,7 @@ mod times;
 pub use atomic::write_whole;
 pub use envelope::{TRACE_POINTS, Trace};
 pub use figures::{Analysis, Findings, JointFigures, MoveFigures, Peak, SeamFigures, Travel};
-pub use info::{Acceptance, Event, EventKind, JointInfo, RunInfo, SegmentInfo, SegmentKind};
+pub use info::{Acceptance, Event, EventKind, JointInfo, OnSeam, RunInfo, SegmentInfo, SegmentKind};
 pub use plot::{JointTraces, PathPoint, PlotData};
 pub use recorder::{Recorder, SampleSender};
 pub use recording::{Recording, RecordingError};

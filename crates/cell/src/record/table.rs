@@ -53,6 +53,7 @@ impl fmt::Display for Summary {
         writeln!(f, "\n")?;
         write_checks(f, self)?;
         write_moves(f, self)?;
+        write_seam(f, self)?;
         write_times(f, self)?;
         for (word, incidents) in [("notice", &self.notices), ("fault", &self.faults)] {
             for incident in incidents {
@@ -75,6 +76,17 @@ fn write_checks(f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
         ]
     });
     write_table(f, &["<", "<figure", ">worst", ">bound", "<", "<where"], rows)
+}
+
+/// One line, where a seam was tracked.
+fn write_seam(f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
+    let Some(seam) = &summary.seam else { return Ok(()) };
+    let [lateral, height] = [seam.lateral_max_mm, seam.height_max_mm].map(rounded);
+    write!(f, "seam: corrected by up to {lateral} mm to the side and {height} mm in height")?;
+    if let (Some(rms), Some(greatest)) = (seam.error_rms_mm, seam.error_max_mm) {
+        write!(f, "; off by {} mm RMS, {} mm at most", rounded(rms), rounded(greatest))?;
+    }
+    writeln!(f, "\n")
 }
 
 fn write_moves(f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {

@@ -38,6 +38,9 @@ pub enum RunError {
     /// The cell's prefilters do not suit its cycle.
     #[error("vibration.prefilter: {0}")]
     Prefilter(#[from] seamline::vibration::StageError),
+    /// The cell's seam sensor cannot be opened.
+    #[error("{0}")]
+    Sensor(#[from] crate::sensor::SensorError),
     /// The program fails.
     #[error("{0}")]
     Job(#[from] JobError),

@@ -3,6 +3,7 @@
 use seamline::drive::DriveFault;
 use seamline::kinematics::JointKind;
 use seamline::safety::Fault;
+use seamline::seam::Rejection;
 
 use crate::record::JointInfo;
 use crate::robot::JointUnit;
@@ -40,6 +41,13 @@ pub fn describe(fault: &Fault, joints: &[JointInfo]) -> String {
         Fault::ArcNotLit { tries } => format!("the arc did not light in {tries} strikes"),
         Fault::ArcLost { seconds } => {
             format!("the arc went out ({:.0} ms without current)", 1000.0 * seconds)
+        }
+        Fault::SeamLost { seen_to, dropped } => {
+            let why = dropped.map_or("the sensor is silent", Rejection::name);
+            format!(
+                "the seam is lost: seen up to {:.1} mm of the tracked path (last reading: {why})",
+                1000.0 * seen_to
+            )
         }
     }
 }

@@ -6,6 +6,7 @@ use seamline::safety::Fault;
 use super::machine::Machine;
 use crate::cell::{FaultKind, ScriptedFault};
 use crate::plan::PlanningArm;
+use crate::sensor::SensorFault;
 use crate::sim::{ArcFault, InjectedFault, SimulatedArc, SimulatedDrive};
 
 /// The code of an alarm on purpose.
@@ -48,6 +49,9 @@ impl FaultScript {
                 FaultKind::PlannerSilent => machine.silence_planner(true),
                 FaultKind::NoIgnition => machine.devices_mut().arc.inject(ArcFault::NoIgnition),
                 FaultKind::ArcLoss => machine.devices_mut().arc.inject(ArcFault::Loss),
+                FaultKind::SensorSilent => machine.devices_mut().seam.inject(SensorFault::Silent),
+                FaultKind::SensorNan => machine.devices_mut().seam.inject(SensorFault::Nan),
+                FaultKind::SensorJump => machine.devices_mut().seam.inject(SensorFault::Jump),
                 _ => {}
             }
         }
@@ -67,6 +71,7 @@ impl FaultScript {
         let devices = machine.devices_mut();
         devices.drive.clear_faults();
         devices.arc.clear_faults();
+        devices.seam.clear_faults();
     }
 }
 

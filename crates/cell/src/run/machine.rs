@@ -15,6 +15,7 @@ use super::clock::thread_cpu_ns;
 use crate::cell::Cell;
 use crate::plan::{Arm, PlanningArm};
 use crate::record::{MAX_JOINTS, Sample, TimeFigures, TimeHistogram};
+use crate::sensor::CellSensor;
 
 /// Late cycles in a row after which the arm stops.
 const OVERRUNS_IN_ROW: u32 = 20;
@@ -47,6 +48,8 @@ pub struct Devices<D, A> {
     pub drive: D,
     /// The welding power source.
     pub arc: A,
+    /// The seam sensor.
+    pub seam: CellSensor,
 }
 
 /// Memory of the prefilters, from the heap before the first cycle.
@@ -67,7 +70,8 @@ pub fn joint_prefilter<const N: usize>(cell: &Cell) -> Result<JointPrefilter<N, 
 /// A controller, its devices and its queue. [`Machine::cycle`] neither allocates nor locks.
 #[derive(Debug)]
 pub struct Machine<const N: usize, K, D, A, C> {
-    cycle: Cycle<N, K, Memory<N>>,
+    /// It holds all that a cycle may need, and is not to be moved about.
+    cycle: Box<Cycle<N, K, Memory<N>>>,
     devices: Devices<D, A>,
     clock: C,
     queue: Queue<N>,
@@ -107,7 +111,7 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock
         };
         let prefilter = joint_prefilter(cell)?;
         Ok(Self {
-            cycle: Cycle::with_prefilter(config, arm.kinematics.clone(), prefilter, arm.home),
+            cycle: Box::new(Cycle::with_prefilter(config, arm.kinematics.clone(), prefilter, arm.home)),
             devices,
             clock,
             queue: Queue { commands: queue, silent: false },
@@ -171,7 +175,7 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock
     /// One period: command, exchange with the drives, and the sample of it.
     pub fn cycle(&mut self) -> (CycleOutput<N>, Sample) {
         let before = thread_cpu_ns();
-        let output = self.cycle.step(&self.input, &mut self.queue, &mut self.clock);
+        let output = self.cycle.step(&self.input, &mut self.queue, &mut self.devices.seam, &mut self.clock);
         self.times.whole.record(thread_cpu_ns().saturating_sub(before));
         for (histogram, ns) in self.times.stages.iter_mut().zip(output.status.stage_ns) {
             histogram.record(u64::from(ns));
@@ -200,6 +204,11 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock
             arc: output.arc.on,
             ..Sample::at_rest()
         };
+        if let Some(seam) = status.seam.filter(|seam| seam.on_seam) {
+            (sample.seam_lateral, sample.seam_height) = (seam.offset.x, seam.offset.y);
+            let truth = self.devices.seam.true_seam(seam.s);
+            sample.seam_error = truth.map_or(f64::NAN, |truth| (seam.offset - truth).norm());
+        }
         let joints = N.min(MAX_JOINTS);
         let measured = self.input.measured.unwrap_or([f64::NAN; N]);
         sample.command[..joints].copy_from_slice(&output.command.position[..joints]);

@@ -20,6 +20,7 @@ use super::walk::Walk;
 use crate::cell::{Cell, Vibration};
 use crate::plan::{Arm, PlanningArm};
 use crate::record::{Acceptance, Findings, JointInfo, Outcome, Recorder, RunInfo, SampleSender, Summary};
+use crate::sensor::CellSensor;
 use crate::sim::{SimulatedArc, SimulatedDrive};
 
 /// Commands between planner and cycle.
@@ -81,11 +82,12 @@ pub fn run<const N: usize, K: PlanningArm<N> + Send>(
     let path = options.out.join("recording.csv");
     let file = |source| RunError::File { path: path.display().to_string(), source };
     let drive = SimulatedDrive::from_cell(cell)?;
+    let seam = CellSensor::from_cell(cell)?;
     let info = run_info(program, cell, arm);
     fs::create_dir_all(&options.out).map_err(file)?;
     let (samples, recorder) = Recorder::start(&path, &info).map_err(file)?;
     let (producer, consumer) = RingBuffer::new(QUEUE);
-    let devices = Devices { drive, arc: SimulatedArc::from_cell(cell) };
+    let devices = Devices { drive, arc: SimulatedArc::from_cell(cell), seam };
     let mut machine = Machine::new(cell, arm, devices, MonotonicClock::default(), consumer)?;
     machine.set_override(options.speed_override);
     let walk = Walk::new(program, cell, arm)?;

@@ -2,9 +2,8 @@
 
 use std::collections::VecDeque;
 
-use seamline::geometry::Pose;
 use seamline::path::SeamFrame;
-use seamline::seam::{Instant, Reading, SeamSensor, TaughtPath};
+use seamline::seam::{Instant, Reading, SeamSensor, Sensor, TaughtPath};
 
 use super::seam::{Sight, SimulatedSeam};
 use crate::cell::{Cell, LaserErrors};
@@ -24,12 +23,8 @@ const UNDER_WAY: usize = 10_000;
 ///
 /// It exposes at the cycle's instants, with the pose that the torch really has; a laser faster than the cycle exposes once a cycle.
 #[derive(Debug, Clone)]
-pub struct SimulatedLaser<P> {
-    path: P,
+pub struct SimulatedLaser {
     seam: SimulatedSeam,
-    tcp_from_sensor: Pose,
-    /// Along the taught path, in metres.
-    look_ahead: f64,
     /// Seconds between two exposures.
     apart: f64,
     latency: f64,
@@ -42,23 +37,20 @@ pub struct SimulatedLaser<P> {
     under_way: VecDeque<(f64, Reading)>,
 }
 
-impl<P: TaughtPath> SimulatedLaser<P> {
-    /// The laser that a cell describes, on a torch that welds along a taught path beside which the seam runs. Its first exposure is
-    /// at a random instant of the first period after `start`, in seconds on the cycle's clock.
+impl SimulatedLaser {
+    /// The laser that a cell describes, on a torch that welds along a taught path beside which the cell's seam runs. Its first exposure is
+    /// at a random instant of the first period.
     #[must_use]
-    pub fn from_cell(cell: &Cell, path: P, seam: SimulatedSeam, tcp_from_sensor: Pose, start: f64) -> Self {
+    pub fn from_cell(cell: &Cell) -> Self {
         let (sensor, simulation) = (&cell.sensor, &cell.simulation);
         let mut random = Random::new(u64::from(simulation.seed));
         let apart = 1.0 / sensor.rate_hz;
         Self {
-            path,
-            seam,
-            tcp_from_sensor,
-            look_ahead: sensor.look_ahead,
+            seam: SimulatedSeam { features: simulation.seam.clone() },
             apart,
             latency: sensor.latency,
             errors: simulation.laser,
-            next_exposure: start + apart * random.unit(),
+            next_exposure: apart * random.unit(),
             exposed: f64::NEG_INFINITY,
             random,
             under_way: VecDeque::with_capacity(UNDER_WAY),
@@ -71,7 +63,7 @@ impl<P: TaughtPath> SimulatedLaser<P> {
         &self.seam
     }
 
-    fn expose(&mut self, torch: &Instant) {
+    fn expose(&mut self, torch: &Instant, sensor: &Sensor, path: &impl TaughtPath) {
         self.exposed = torch.time;
         // After a stretch without cycles the laser goes on from now.
         self.next_exposure = (self.next_exposure + self.apart).max(torch.time);
@@ -87,7 +79,7 @@ impl<P: TaughtPath> SimulatedLaser<P> {
         if dropped || self.under_way.len() == UNDER_WAY {
             return;
         }
-        let Some((sight, [lateral, height])) = self.crossing(torch) else { return };
+        let Some((sight, [lateral, height])) = crossing(&self.seam, torch, sensor, path) else { return };
         let reading = Reading {
             lateral: lateral + errors[0],
             height: height + errors[1],
@@ -97,38 +89,43 @@ impl<P: TaughtPath> SimulatedLaser<P> {
         };
         self.under_way.push_back((torch.time + self.latency, reading));
     }
-
-    /// Where the laser's plane cuts the seam: what stands there, and its place along the sensor's y and z. By bisection over the path.
-    fn crossing(&self, torch: &Instant) -> Option<(Sight, [f64; 2])> {
-        let sensor_from_base = (torch.base_from_tcp * self.tcp_from_sensor).inverse();
-        let seen = |s: f64, sight: Option<Sight>| {
-            let jet = self.path.jet(s);
-            let frame = SeamFrame::of(&jet)?;
-            let offset = sight.map_or_else(|| self.seam.offset(s), |sight| sight.offset);
-            let aside = frame.vector([0.0, offset.x, offset.y]);
-            let point = nalgebra::Point3::from(jet.pose.translation.vector + aside);
-            Some((sensor_from_base * point).coords)
-        };
-        let (first, last) = self.path.span();
-        let near = torch.s + self.look_ahead;
-        let (mut low, mut high) = ((near - SEARCH).max(first), (near + SEARCH).min(last));
-        if low >= high || seen(low, None)?.x > 0.0 || seen(high, None)?.x < 0.0 {
-            return None;
-        }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            *(if seen(middle, None)?.x < 0.0 { &mut low } else { &mut high }) = middle;
-        }
-        let sight = self.seam.sight(low)?;
-        let point = seen(low, Some(sight))?;
-        Some((sight, [point.y, point.z]))
-    }
 }
 
-impl<P: TaughtPath> SeamSensor for SimulatedLaser<P> {
-    fn poll(&mut self, torch: &Instant) -> Option<Reading> {
+/// Where the laser's plane cuts the seam: what stands there, and its place along the sensor's y and z. By bisection over the path.
+fn crossing(
+    seam: &SimulatedSeam,
+    torch: &Instant,
+    sensor: &Sensor,
+    path: &impl TaughtPath,
+) -> Option<(Sight, [f64; 2])> {
+    let sensor_from_base = (torch.base_from_tcp * sensor.tcp_from_sensor).inverse();
+    let seen = |s: f64, sight: Option<Sight>| {
+        let jet = path.jet(s);
+        let frame = SeamFrame::of(&jet)?;
+        let offset = sight.map_or_else(|| seam.offset(s), |sight| sight.offset);
+        let aside = frame.vector([0.0, offset.x, offset.y]);
+        let point = nalgebra::Point3::from(jet.pose.translation.vector + aside);
+        Some((sensor_from_base * point).coords)
+    };
+    let (first, last) = path.span();
+    let near = torch.s + sensor.look_ahead();
+    let (mut low, mut high) = ((near - SEARCH).max(first), (near + SEARCH).min(last));
+    if low >= high || seen(low, None)?.x > 0.0 || seen(high, None)?.x < 0.0 {
+        return None;
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        *(if seen(middle, None)?.x < 0.0 { &mut low } else { &mut high }) = middle;
+    }
+    let sight = seam.sight(low)?;
+    let point = seen(low, Some(sight))?;
+    Some((sight, [point.y, point.z]))
+}
+
+impl SeamSensor for SimulatedLaser {
+    fn poll(&mut self, torch: &Instant, sensor: &Sensor, path: &impl TaughtPath) -> Option<Reading> {
         if torch.time + ROUNDING >= self.next_exposure && torch.time > self.exposed {
-            self.expose(torch);
+            self.expose(torch, sensor, path);
         }
         let due = self.under_way.front().is_some_and(|(arrival, _)| *arrival <= torch.time + ROUNDING);
         if due { self.under_way.pop_front().map(|(_, reading)| reading) } else { None }

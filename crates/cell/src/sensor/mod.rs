@@ -2,17 +2,20 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | `cell_sensor` | the one that a cell asks for |
 //! | [`csv`] | readings as a CSV file |
 //! | `replay` | readings of an earlier run once more |
 //! | `laser`, `seam` | a simulated laser on a simulated seam |
 //! | [`egm`] | readings over UDP: ABB's EGM path correction |
 
+mod cell_sensor;
 pub mod csv;
 pub mod egm;
 mod laser;
 mod replay;
 mod seam;
 
+pub use cell_sensor::{CellSensor, SensorError, SensorFault};
 pub use laser::SimulatedLaser;
 pub use replay::Replay;
 pub use seam::{SeamFeature, SimulatedSeam};

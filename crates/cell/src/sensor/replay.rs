@@ -1,6 +1,6 @@
 //! Readings of an earlier run once more.
 
-use seamline::seam::{Instant, Reading, SeamSensor};
+use seamline::seam::{Instant, Reading, SeamSensor, Sensor, TaughtPath};
 
 use super::csv::Arrival;
 
@@ -26,7 +26,7 @@ impl Replay {
 }
 
 impl SeamSensor for Replay {
-    fn poll(&mut self, torch: &Instant) -> Option<Reading> {
+    fn poll(&mut self, torch: &Instant, _: &Sensor, _: &impl TaughtPath) -> Option<Reading> {
         let arrival = self.arrivals.get(self.next).filter(|arrival| arrival.time <= torch.time)?;
         self.next += 1;
         Some(arrival.reading)

@@ -12,6 +12,7 @@ use seamline::control::{
 use seamline::drive::Drive;
 use seamline::kinematics::SixAxisArm;
 use seamline::safety::WorkspaceBox;
+use seamline::seam::NoSensor;
 use seamline_cell::cell::Cell;
 use seamline_cell::job::{
     Action, Coordinates, JobPosition, Location, Move, MovePath, PositionKind, PositionName, Speed,
@@ -236,7 +237,7 @@ impl<const N: usize, K: PlanningArm<N>> Bench<N, K> {
     }
 
     pub(crate) fn cycle(&mut self) -> CycleOutput<N> {
-        let output = self.cycle.step(&self.input, &mut self.queue, &mut NoClock);
+        let output = self.cycle.step(&self.input, &mut self.queue, &mut NoSensor, &mut NoClock);
         self.input.event = None;
         self.input.fault = None;
         self.input.measured = Drive::exchange(&mut self.drive, &output.command, self.period);

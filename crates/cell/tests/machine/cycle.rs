@@ -3,6 +3,7 @@
 use crate::bench::{Ar2010, Bench, independent_forward, independent_torch, move_to, worst_shares};
 use seamline::control::{Command, Event, Mode};
 use seamline::kinematics::Kinematics;
+use seamline::seam::NoSensor;
 use seamline_cell::cell::Cell;
 use seamline_cell::job::{MovePath, Speed};
 use seamline_cell::plan::{Arm, Planner};
@@ -143,6 +144,6 @@ fn a_clock_that_jumps_back_does_no_harm() {
     let (cell, arm) = setup();
     let mut bench = Bench::new(&cell, &arm, commands(&cell, &arm, 200.0));
     bench.cycle_with(Event::Start);
-    let output = bench.cycle.step(&bench.input, &mut bench.queue, &mut Backwards(1_000_000));
+    let output = bench.cycle.step(&bench.input, &mut bench.queue, &mut NoSensor, &mut Backwards(1_000_000));
     assert_eq!((output.status.fault, output.status.stage_ns), (None, [0; 4]));
 }

@@ -19,5 +19,8 @@ mod no_alloc;
 mod pause;
 mod prefilter;
 mod recorded;
+mod seam;
+mod seam_sensors;
+mod seam_stops;
 mod weave;
 mod weld;

@@ -5,13 +5,15 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell as Flag;
 
 use crate::bench::{Ar2010, flexible, move_to, on_feedrate};
+use crate::seam::{self, Taught, Weld};
 use rtrb::RingBuffer;
 use seamline::arc::ArcSetting;
 use seamline::control::{Command, Event, Mode};
-use seamline_cell::cell::Cell;
+use seamline_cell::cell::{Cell, LostSeam, SensorSource};
 use seamline_cell::job::{MovePath, Speed};
 use seamline_cell::plan::{Arm, Planner};
 use seamline_cell::run::{Devices, Machine, MonotonicClock};
+use seamline_cell::sensor::CellSensor;
 use seamline_cell::sim::{SimulatedArc, SimulatedDrive};
 
 thread_local! {
@@ -79,13 +81,42 @@ fn nor_do_they_with_prefilters_for_two_modes() {
     run(&on_feedrate("fir-zvd", &[6.34, 17.0]));
 }
 
+/// A tracked, weaving weld with the laser, and with an EGM client that sends nothing: the sensor is asked in each cycle.
+#[test]
+fn nor_does_a_tracked_weld() {
+    for source in [SensorSource::Simulated, SensorSource::Egm] {
+        let mut cell = seam::cell(0, "");
+        cell.sensor.source = source;
+        cell.sensor.lost = LostSeam::TaughtPath;
+        cell.sensor.egm.listen = "127.0.0.1:0".parse().unwrap();
+        let job = Taught::Line.job(20.0, "ARCON ASF#(1)\nWVON WEV#(1)\n", "WVOF\nARCOF AEF#(1)\n");
+        let weld = Weld::with(Taught::Line, &job, cell);
+        let mut machine = weld.machine();
+        let mut tracked = 0;
+        ARMED.set(true);
+        for k in 0..15_000 {
+            match k {
+                7_000 => machine.request(Event::Hold),
+                7_500 => machine.request(Event::Resume),
+                _ => {}
+            }
+            let (output, _) = machine.cycle();
+            tracked += u32::from(output.status.seam.is_some_and(|seam| seam.on_seam));
+        }
+        ARMED.set(false);
+        assert_eq!(COUNT.get(), 0, "allocations and releases");
+        assert!(tracked > 8_000, "{tracked}");
+    }
+}
+
 fn run(cell: &Cell) {
     let arm = Arm::from_cell(cell).unwrap();
     let commands = commands(cell, &arm);
     let (mut producer, consumer) = RingBuffer::new(commands.len());
     commands.into_iter().for_each(|command| producer.push(command).unwrap());
     let drive = SimulatedDrive::<6>::from_cell(cell).unwrap();
-    let devices = Devices { drive, arc: SimulatedArc::from_cell(cell) };
+    let devices =
+        Devices { drive, arc: SimulatedArc::from_cell(cell), seam: CellSensor::from_cell(cell).unwrap() };
     let mut machine = Machine::new(cell, &arm, devices, MonotonicClock::default(), consumer).unwrap();
     machine.request(Event::Enable);
     machine.cycle();

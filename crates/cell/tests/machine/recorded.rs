@@ -126,3 +126,22 @@ fn the_figures_are_right_behind_a_prefilter() {
     assert!(lines.len() == 5 && lines.iter().all(|of| of.straightness_max_mm.unwrap() < 1e-3), "{lines:?}");
     assert!(findings.moves.iter().filter(|of| of.arc).all(|of| of.speed_error_max.is_none_or(|e| e < 1e-3)));
 }
+
+/// The example that tracks a seam, twice: equal recordings to the last byte, all figures within their bounds, and the seam kept but for half of its
+/// step of 0.5 mm.
+#[test]
+fn a_tracked_seam_is_recorded_the_same_twice() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let cell = Cell::load(&root.join("examples/cells/seam.toml")).unwrap();
+    let recording = |folder: &str| {
+        let (report, ..) = recorded_in(&cell, "seam.JBI", folder);
+        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder).join("recording.csv");
+        (report, std::fs::read(file).unwrap())
+    };
+    let ((report, first), (_, second)) = (recording("seam-1"), recording("seam-2"));
+    assert!(first == second, "two runs with one seed differ");
+    assert_eq!(report.summary.verdict, Verdict::Ok, "{}", report.summary);
+    let seam = report.summary.seam.unwrap();
+    assert!(seam.lateral_max_mm > 4.0 && seam.height_max_mm > 1.9, "{seam:?}");
+    assert!(seam.error_rms_mm.unwrap() < 0.03 && seam.error_max_mm.unwrap() < 0.3, "{seam:?}");
+}

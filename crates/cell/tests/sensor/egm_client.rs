@@ -7,10 +7,9 @@ use std::time::Duration;
 use abbegm::msg::EgmSensorPathCorr;
 use abbegm::sync_peer::EgmPeer;
 use prost_of_peer::Message;
-use seamline::seam::SeamSensor;
 use seamline_cell::sensor::egm::{DropReason, EgmSensor, EgmSettings};
 
-use crate::torch;
+use crate::{ask, torch};
 
 const LOOPBACK: &str = "127.0.0.1:0";
 const ANSWERS: u32 = 100;
@@ -44,7 +43,7 @@ fn a_client_that_others_wrote_is_understood_and_understands() {
     // A cycle a millisecond, for ten seconds at most.
     for cycle in 0..10_000_u32 {
         let now = torch(f64::from(cycle) * 1e-3);
-        while let Some(reading) = sensor.poll(&now) {
+        while let Some(reading) = ask(&mut sensor, &now) {
             // Three milliseconds old when it was sent, and not from the future.
             assert!(reading.exposure <= now.time - 3e-3, "{reading:?} at {}", now.time);
             readings.push(reading);
@@ -81,7 +80,7 @@ fn what_is_wrong_or_foreign_is_counted() {
     }
     let mut readings = 0;
     for cycle in 0..10_000_u32 {
-        readings += u32::from(sensor.poll(&torch(f64::from(cycle) * 1e-3)).is_some());
+        readings += u32::from(ask(&mut sensor, &torch(f64::from(cycle) * 1e-3)).is_some());
         if sensor.counts().dropped() == 3 && readings == 1 {
             break;
         }
@@ -111,7 +110,7 @@ fn a_cycle_that_does_not_ask_loses_readings_only() {
         thread::sleep(Duration::from_millis(5));
     }
     assert_eq!(sensor.counts().of(DropReason::RingFull), 200 - 64);
-    let left = std::iter::from_fn(|| sensor.poll(&torch(1.0))).count();
+    let left = std::iter::from_fn(|| ask(&mut sensor, &torch(1.0))).count();
     assert_eq!(left, 64);
 }
 

@@ -1,19 +1,15 @@
 //! The simulated laser on a straight weld along x, with the wire pointing down.
 
-use seamline::geometry::{Pose, Vector3};
-use seamline::path::Path;
-use seamline::seam::{Instant, Offset, Reading, SeamSensor, Sensor, TaughtPath};
+use seamline::seam::{Instant, Offset, Reading};
 use seamline_cell::cell::{Cell, LaserErrors};
 use seamline_cell::sensor::{SeamFeature, SimulatedLaser, SimulatedSeam};
+
+use crate::{ask, at};
 
 const LENGTH: f64 = 0.3;
 const SPEED: f64 = 0.02;
 const NO_ERRORS: LaserErrors =
     LaserErrors { noise: 0.0, spike: 5e-3, spike_probability: 0.0, dropout_probability: 0.0 };
-
-fn at(x: f64) -> Pose {
-    Pose::new(Vector3::new(x, 0.0, 0.0), Vector3::x() * std::f64::consts::PI)
-}
 
 fn seam() -> SimulatedSeam {
     let amplitude = Offset::new(5e-3, -3e-3);
@@ -29,14 +25,13 @@ fn weld(errors: LaserErrors, seed: u32) -> Vec<(f64, Reading)> {
     let mut cell = Cell::default_cell().expect("the default");
     cell.simulation.laser = errors;
     cell.simulation.seed = seed;
-    let path = Path::line(&at(0.0), &at(LENGTH));
-    let mounting = Sensor::mounting(&TaughtPath::jet(&path, 0.0), cell.sensor.look_ahead).expect("a frame");
-    let mut laser = SimulatedLaser::from_cell(&cell, path, seam(), mounting, 0.0);
+    cell.simulation.seam = seam().features;
+    let mut laser = SimulatedLaser::from_cell(&cell);
     let mut all = Vec::new();
     for cycle in 0..(LENGTH / SPEED * 1e3) as u32 {
         let time = f64::from(cycle) * 1e-3;
         let torch = Instant { time, s: SPEED * time, base_from_tcp: at(SPEED * time) };
-        while let Some(reading) = laser.poll(&torch) {
+        while let Some(reading) = ask(&mut laser, &torch) {
             all.push((time, reading));
         }
     }

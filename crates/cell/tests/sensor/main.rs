@@ -7,8 +7,9 @@ mod egm_client;
 mod laser;
 mod replay;
 
-use seamline::geometry::Pose;
-use seamline::seam::Instant;
+use seamline::geometry::{Pose, Vector3};
+use seamline::path::Path;
+use seamline::seam::{Instant, Offset, Reading, SeamSensor, Sensor};
 
 /// SplitMix64.
 struct Random(u64);
@@ -33,4 +34,29 @@ impl Random {
 
 fn torch(time: f64) -> Instant {
     Instant { time, s: 0.0, base_from_tcp: Pose::translation(1.0, -0.2, 0.3) }
+}
+
+/// What a sensor answers on a straight weld along x.
+fn ask(sensor: &mut impl SeamSensor, torch: &Instant) -> Option<Reading> {
+    sensor.poll(torch, &mounted(0.03), &line(0.3))
+}
+
+/// The wire points down.
+fn at(x: f64) -> Pose {
+    Pose::new(Vector3::new(x, 0.0, 0.0), Vector3::x() * std::f64::consts::PI)
+}
+
+fn line(length: f64) -> Path {
+    Path::line(&at(0.0), &at(length))
+}
+
+fn mounted(look_ahead: f64) -> Sensor {
+    Sensor {
+        tcp_from_sensor: Sensor::mounting(&line(1.0).jet(0.0), look_ahead).expect("a frame"),
+        range: Offset::repeat(0.01),
+        rate: 100.0,
+        latency: 0.01,
+        age_max: 0.1,
+        quality_min: 0.0,
+    }
 }

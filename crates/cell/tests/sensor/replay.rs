@@ -1,10 +1,10 @@
 //! Recordings of readings.
 
-use seamline::seam::{Reading, SeamSensor};
+use seamline::seam::Reading;
 use seamline_cell::sensor::Replay;
 use seamline_cell::sensor::csv::{Arrival, HEADER, read, write};
 
-use crate::{Random, torch};
+use crate::{Random, ask, torch};
 
 /// 10,000 readings, a tenth of them without a number or a gap: text and replay give them back bit for bit, each in its cycle.
 #[test]
@@ -27,7 +27,7 @@ fn a_replay_is_what_was_recorded() {
     let mut cycle = 0_u32;
     while replay.left() > 0 {
         let now = f64::from(cycle) * 1e-3;
-        while let Some(reading) = replay.poll(&torch(now)) {
+        while let Some(reading) = ask(&mut replay, &torch(now)) {
             let due = recorded[replayed.len()].time;
             assert!(due <= now && due > now - 1.001e-3, "{due} at {now}");
             replayed.push(reading);

@@ -142,6 +142,7 @@ fn job() -> Vec<Move> {
                 arc,
                 constant_part,
                 rounded: [0.0; 2],
+                seam: seamline_cell::record::OnSeam::No,
             };
             Move { info, from, to, speed, duration }
         };

@@ -1,5 +1,6 @@
 //! Blocks: what a planner hands to the cycle, piece by piece, through a bounded queue.
 
+use super::seam::{Tracked, Tracking};
 use crate::arc::ArcSetting;
 use crate::geometry::{Pose, PoseJet};
 use crate::otg::{Sample, Trajectory};
@@ -35,6 +36,17 @@ pub enum Command<const N: usize> {
     },
     /// From here on the power source is set to this.
     ArcSetting(ArcSetting),
+    /// The taught path of the weld goes on: a seam is looked for along it, ahead of the motion.
+    Taught {
+        /// Without a weave.
+        path: Path,
+        /// Coordinate of the weld at which it begins, in metres. Where it does not go on from the one before, another weld begins.
+        start: f64,
+    },
+    /// The seam is tracked from here on. The arm is at rest.
+    TrackOn(Tracking),
+    /// The seam is tracked no longer. The arm is at rest.
+    TrackOff,
     /// A place in the program that the status reports when it is passed. Numbers rise.
     Marker(u32),
     /// The program ends here.
@@ -123,6 +135,8 @@ pub struct PathMotion {
     pub acceleration: f64,
     /// Highest jerk likewise.
     pub jerk: f64,
+    /// Where the path follows a tracked seam.
+    pub tracked: Option<Tracked>,
     tcp_from_flange: Pose,
     pieces: [TimingPiece; BLOCK_PIECES],
     /// When each piece begins, in seconds from the block's start.
@@ -156,12 +170,19 @@ impl PathMotion {
             path,
             acceleration,
             jerk,
+            tracked: None,
             tcp_from_flange,
             pieces,
             starts,
             count: timing.len(),
             duration,
         })
+    }
+
+    /// The same motion along a tracked seam.
+    #[must_use]
+    pub fn on_seam(self, tracked: Tracked) -> Self {
+        Self { tracked: Some(tracked), ..self }
     }
 
     /// Duration in seconds of programme time.
@@ -178,7 +199,7 @@ impl PathMotion {
         self.pieces[k].at((time - self.starts[k]).clamp(0.0, self.pieces[k].duration))
     }
 
-    /// The flange's motion in programme time at a time since the block's start.
+    /// The flange's motion in programme time at a time since the block's start, without the correction of a tracked seam.
     #[must_use]
     pub fn flange(&self, time: f64) -> PoseJet {
         flange_on(&self.path, &self.tcp_from_flange, &self.state(time))

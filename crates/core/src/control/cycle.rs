@@ -16,6 +16,7 @@ use crate::drive::{DriveFault, JointCommand};
 use crate::geometry::Pose;
 use crate::kinematics::{JointJet, Kinematics};
 use crate::safety::{Envelope, Fault, MotionLimits, StopCategory, WorkspaceBox};
+use crate::seam::SeamSensor;
 
 /// Least distance of the look-ahead's samples in seconds.
 const SAMPLE_SPACING: f64 = 1e-3;
@@ -87,6 +88,8 @@ pub struct Cycle<const N: usize, K, M = [PrefilterEntry<N>; 0]> {
     base_from_tcp: Pose,
     /// The joints as last measured.
     measured: [f64; N],
+    /// Cycles so far: the clock that a seam sensor's readings are on.
+    cycles: u64,
     overruns: u64,
     overruns_in_row: u32,
 }
@@ -138,6 +141,7 @@ where
             base_from_tcp: kinematics.forward(&position) * flange_from_tcp,
             kinematics,
             measured: position,
+            cycles: 0,
             overruns: 0,
             overruns_in_row: 0,
         }
@@ -152,16 +156,21 @@ where
     /// One cycle: takes what was measured, gives the next command. Always answers; a fault stops the arm as its
     /// category says and stays until it is reset.
     ///
-    /// Cost: two inverse kinematics with derivatives; during a change of the rate, its search in addition.
+    /// The seam sensor is asked where a seam is tracked, before the command is made: what has arrived counts in this cycle. Its clock counts the
+    /// cycles from the first.
+    ///
+    /// Cost: two inverse kinematics with derivatives; during a change of the rate, and on a tracked seam, its search in addition.
     pub fn step(
         &mut self,
         input: &CycleInput<N>,
         source: &mut impl CommandSource<N>,
+        sensor: &mut impl SeamSensor,
         clock: &mut impl StageClock,
     ) -> CycleOutput<N> {
         let t0 = clock.now_ns();
         let refused = input.event.filter(|event| !(event.is_operators() && self.apply(*event)));
         self.feedback(input);
+        self.sense(sensor);
         let t1 = clock.now_ns();
         let advanced = self.target(input.speed_override, source);
         let t2 = clock.now_ns();
@@ -320,8 +329,22 @@ where
     }
 
     fn rate_limits(&self) -> RateLimits<N> {
-        let MotionLimits { acceleration, jerk, .. } = self.config.limits;
-        RateLimits { acceleration, jerk }
+        let MotionLimits { velocity, acceleration, jerk, .. } = self.config.limits;
+        RateLimits { velocity, acceleration, jerk }
+    }
+
+    /// Where a seam is tracked, its sensor.
+    fn sense(&mut self, sensor: &mut impl SeamSensor) {
+        let time = self.cycles as f64 * self.config.period;
+        self.cycles += 1;
+        if !self.program.guide.is_on() {
+            return;
+        }
+        let tcp = self.kinematics.forward(&self.measured) * self.program.place().flange_from_tcp;
+        self.program.sense(time, tcp, sensor);
+        if let (Mode::Running, Some(fault)) = (self.mode, self.program.guide.lost()) {
+            self.raise(fault);
+        }
     }
 
     fn advance(&mut self, goal: f64, source: &mut impl CommandSource<N>) -> Result<(), Fault> {
@@ -416,7 +439,7 @@ where
     /// Where the program is.
     fn progress(&self) -> Progress {
         let (course, since) = self.program.course();
-        let (mark, rate) = (self.program.place().mark, self.program.rate().value());
+        let (mark, rate) = (self.program.place().mark, self.program.shown_rate());
         Progress { mark, since, course, tool_way: self.program.way().tool, rate }
     }
 
@@ -493,6 +516,7 @@ where
             estimated,
             measured_base_from_tcp: self.kinematics.forward(&estimated)
                 * self.program.place().flange_from_tcp,
+            seam: self.program.seam_status(),
             overruns: self.overruns,
             stage_ns,
         };

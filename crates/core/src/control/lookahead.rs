@@ -1,5 +1,8 @@
 //! The joint motion of the near future, sampled in programme time: what the rate may do is decided on it.
 
+use super::rate::RateLimits;
+use crate::math::float::{cbrt, sqrt};
+
 /// Number of samples held.
 pub(super) const CAPACITY: usize = 80;
 
@@ -122,6 +125,27 @@ impl<const N: usize> Lookahead<N> {
             fraction,
             spacing: self.spacing,
         })
+    }
+
+    /// The greatest constant rate, 1 at most, that keeps the joints' limits on all samples held. Cost: 80 samples, about 1 µs.
+    pub(super) fn bearable(&self, limits: &RateLimits<N>) -> f64 {
+        let mut rate = 1.0_f64;
+        for k in 0..self.count {
+            let motion = &self.ring[Self::slot(self.first + k as u64)];
+            for axis in 0..N {
+                rate = rate.min(limits.velocity[axis] / motion.velocity[axis].abs());
+                let squared = rate * rate;
+                // Roots are rarely needed.
+                let (bends, jerks) = (motion.acceleration[axis].abs(), motion.jerk[axis].abs());
+                if bends * squared > limits.acceleration[axis] {
+                    rate = sqrt(limits.acceleration[axis] / bends);
+                }
+                if jerks * rate * rate * rate > limits.jerk[axis] {
+                    rate = cbrt(limits.jerk[axis] / jerks);
+                }
+            }
+        }
+        rate
     }
 
     fn time(&self, grid: u64) -> f64 {

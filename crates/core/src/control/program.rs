@@ -4,12 +4,14 @@ use super::block::{Block, Command, Motion};
 use super::history::{Done, History};
 use super::lookahead::{AlongPath, JointMotion, Lookahead};
 use super::rate::{Rate, RateLimits};
+use super::seam::{Corrections, Fade, SeamGuide, SeamStatus, Tracking, shown_rate};
 use super::track::{OnTrack, Track};
 use super::trail::{Mark, Way};
 use crate::geometry::{Pose, PoseJet};
 use crate::kinematics::{JointJet, Kinematics};
 use crate::path::{Measure, PathState};
 use crate::safety::Fault;
+use crate::seam::{Instant, SeamSensor};
 
 /// Commands held between the queue and the motion.
 const PENDING: usize = 32;
@@ -50,6 +52,11 @@ pub(super) struct Program<const N: usize> {
     pub(super) ahead_position: [f64; N],
     pub(super) position: [f64; N],
     place: Place,
+    pub(super) guide: SeamGuide,
+    /// What the joints still are beside the planned motion after a seam was tracked.
+    fade: Option<Fade<N>>,
+    /// The share of full speed that was last asked for.
+    speed: f64,
 }
 
 /// What the program has reached.
@@ -100,6 +107,9 @@ impl<const N: usize> Program<N> {
             ahead_position: position,
             position,
             place,
+            guide: SeamGuide::new(),
+            fade: None,
+            speed: 0.0,
         }
     }
 
@@ -111,10 +121,6 @@ impl<const N: usize> Program<N> {
 
     pub(super) fn place(&self) -> &Place {
         &self.place
-    }
-
-    pub(super) fn rate(&self) -> &Rate {
-        &self.rate
     }
 
     /// Nothing moves: time stands still, or there is nothing to move along.
@@ -140,6 +146,7 @@ impl<const N: usize> Program<N> {
         period: f64,
         arm: Arm,
     ) -> Result<(), Fault> {
+        self.speed = goal;
         self.refill(source, goal);
         self.look_ahead(kinematics)?;
         if self.arriving {
@@ -151,6 +158,7 @@ impl<const N: usize> Program<N> {
         }
         let before = self.now;
         if self.under_way(before).is_some() {
+            let goal = self.goal(goal, Some(limits));
             self.now += self.rate.advance(goal, self.now, &self.ahead, limits, period);
         }
         self.stop_among_done(before, arm);
@@ -163,7 +171,7 @@ impl<const N: usize> Program<N> {
         }
         // Each turn removes a command, or is the last.
         for _ in 0..PENDING {
-            if self.arriving || !self.finish_head(goal, kinematics, period, arm)? {
+            if self.arriving || !self.finish_head(goal, kinematics, limits, period, arm)? {
                 break;
             }
         }
@@ -175,6 +183,7 @@ impl<const N: usize> Program<N> {
         &mut self,
         goal: f64,
         kinematics: &K,
+        limits: &RateLimits<N>,
         period: f64,
         arm: Arm,
     ) -> Result<bool, Fault> {
@@ -188,7 +197,8 @@ impl<const N: usize> Program<N> {
                 }
                 let (rests, way) = (block.ends_at_rest, way_on(block, block.duration()));
                 // Exactly where the move ends, however the cycles fell.
-                let position = joints_on(block, block.duration(), &self.position, kinematics)?.position;
+                let at = At { block, start: self.move_start, since: block.duration() };
+                let position = joints_on(&at, &self.position, &self.corrections(), kinematics)?.position;
                 let way_after = self.way_before.plus(way);
                 self.done.push(Done { start: self.move_start, way: self.way_before, block: *block });
                 self.track.lay(block, self.way_before.path, way_after.path);
@@ -227,6 +237,12 @@ impl<const N: usize> Program<N> {
             }
             Some(Command::ArcSetting(setting)) => self.place.mark.setting = *setting,
             Some(Command::Marker(number)) => self.place.mark.marker = *number,
+            Some(Command::Taught { path, start }) => self.guide.teach(path, *start),
+            Some(Command::TrackOn(tracking)) => {
+                let tracking = *tracking;
+                self.track(&tracking, kinematics, limits)?;
+            }
+            Some(Command::TrackOff) => self.leave_seam(kinematics, limits)?,
             Some(Command::End) => {
                 self.place.ended = true;
                 return Ok(false);
@@ -242,7 +258,10 @@ impl<const N: usize> Program<N> {
     /// [`Fault::NoInverse`] where the path has no joint solution.
     pub(super) fn joints<K: Kinematics<N>>(&mut self, kinematics: &K) -> Result<JointJet<N>, Fault> {
         let jet = match self.under_way(self.now) {
-            Some((start, block)) => joints_on(block, self.now - start, &self.position, kinematics)?,
+            Some((start, block)) => {
+                let at = At { block, start, since: self.now - start };
+                joints_on(&at, &self.position, &self.corrections(), kinematics)?
+            }
             None => JointJet::at_rest(self.position),
         };
         self.position = jet.position;
@@ -301,6 +320,101 @@ impl<const N: usize> Program<N> {
         self.way().tool - self.arc_way
     }
 
+    pub(super) fn corrections(&self) -> Corrections<'_, N> {
+        Corrections { lane: self.guide.lane(), fade: self.fade.as_ref() }
+    }
+
+    /// The rate at which a share of full speed is kept: on a tracked seam the torch's own speed along it counts.
+    fn goal(&self, speed: f64, limits: Option<&RateLimits<N>>) -> f64 {
+        let Some((start, block)) = self.under_way(self.now) else { return speed };
+        let full = self.full_rate(block, start);
+        let bearable = match limits {
+            Some(limits) if full < 1.0 => self.ahead.bearable(limits),
+            _ => 1.0,
+        };
+        (speed * full).min(bearable)
+    }
+
+    fn full_rate(&self, block: &Block<N>, start: f64) -> f64 {
+        let fading = self.fade.as_ref().map_or(1.0, |fade| fade.rate(self.now));
+        self.guide.rate(block, self.now - start).min(fading)
+    }
+
+    /// The share of full speed at which the program goes on.
+    pub(super) fn shown_rate(&self) -> f64 {
+        let full = self.under_way(self.now).map_or(1.0, |(start, block)| self.full_rate(block, start));
+        if full < 1.0 { shown_rate(self.rate.value(), full, self.speed) } else { self.rate.value() }
+    }
+
+    /// The seam sensor is asked, with the measured tool centre point at the start of the cycle.
+    pub(super) fn sense(&mut self, time: f64, measured: Pose, sensor: &mut impl SeamSensor) {
+        let s = self.weld_coordinate();
+        self.guide.sense(&Instant { time, s, base_from_tcp: measured }, sensor);
+    }
+
+    /// Coordinate of the weld at which the program stands.
+    fn weld_coordinate(&self) -> f64 {
+        let tracked = |block: &Block<N>, since: f64| match &block.motion {
+            Motion::Path(motion) => motion.tracked.map(|on| on.start + motion.state(since).position),
+            Motion::Joint(_) => None,
+        };
+        let here = self.under_way(self.now).and_then(|(start, block)| tracked(block, self.now - start));
+        let behind = || self.done.at(self.now).and_then(|done| tracked(&done.block, done.block.duration()));
+        here.or_else(behind).unwrap_or(self.guide.coordinate())
+    }
+
+    /// What is to be told of the tracking.
+    pub(super) fn seam_status(&self) -> Option<SeamStatus> {
+        self.guide.status(self.weld_coordinate(), self.is_on_seam())
+    }
+
+    /// Whether a tracked move is under way.
+    pub(super) fn is_on_seam(&self) -> bool {
+        self.under_way(self.now).is_some_and(
+            |(_, block)| matches!(&block.motion, Motion::Path(motion) if motion.tracked.is_some()),
+        )
+    }
+
+    /// Tracking begins where the arm stands. What lies behind is forgotten with the lane that led there.
+    fn track<K: Kinematics<N>>(
+        &mut self,
+        tracking: &Tracking,
+        kinematics: &K,
+        limits: &RateLimits<N>,
+    ) -> Result<(), Fault> {
+        let tcp = kinematics.forward(&self.position) * tracking.flange_from_tcp;
+        let seam = self.guide.begin(tracking, &tcp.translation.vector);
+        let flange = seam.attached(&tracking.flange_from_tcp.inverse());
+        let planned = joints_of(&flange, &self.position, kinematics)?.position;
+        self.done = History::new();
+        self.fade_from(&planned, limits);
+        Ok(())
+    }
+
+    /// From the corrected path on to moves as they are planned.
+    fn leave_seam<K: Kinematics<N>>(&mut self, kinematics: &K, limits: &RateLimits<N>) -> Result<(), Fault> {
+        self.guide.end();
+        if let Some(done) = self.done.at(self.now) {
+            let at = At { block: &done.block, start: done.start, since: done.block.duration() };
+            let none = Corrections { lane: None, fade: None };
+            let planned = joints_on(&at, &self.position, &none, kinematics)?.position;
+            if self.fade.is_some_and(|fade| fade.rate(self.now) < 1.0) {
+                // Only one difference can be gone back through.
+                self.done = History::new();
+            }
+            self.fade_from(&planned, limits);
+        }
+        Ok(())
+    }
+
+    /// The arm stands beside the plan: what is between fades out on the way from here.
+    fn fade_from(&mut self, planned: &[f64; N], limits: &RateLimits<N>) {
+        let difference = core::array::from_fn(|axis| self.position[axis] - planned[axis]);
+        self.fade = Fade::new(difference, self.now, limits);
+        self.ahead.forget_after(self.now);
+        self.ahead_position = self.position;
+    }
+
     /// Says where the program is, among the moves done.
     pub(super) fn find_place(&mut self) {
         if let Some((_, block)) = self.under_way(self.now) {
@@ -316,7 +430,7 @@ impl<const N: usize> Program<N> {
     /// The arm has come to where it had to be at rest.
     fn go_on(&mut self, goal: f64) {
         if self.now < self.move_start {
-            self.rate = Rate::constant(goal);
+            self.rate = Rate::constant(self.goal(goal, None));
         } else {
             self.enter_head(goal);
         }
@@ -354,7 +468,13 @@ impl<const N: usize> Program<N> {
     /// The next command that takes time is a move.
     fn moves_on(&self) -> bool {
         let at_once = |command: &&Command<N>| {
-            matches!(command, Command::Marker(_) | Command::Arc { on: false, .. } | Command::ArcSetting(_))
+            matches!(
+                command,
+                Command::Marker(_)
+                    | Command::Taught { .. }
+                    | Command::Arc { on: false, .. }
+                    | Command::ArcSetting(_)
+            )
         };
         let next = (0..self.count).map(|k| self.nth(k)).find(|command| !at_once(command));
         matches!(next, Some(Command::Move(_)))
@@ -377,7 +497,7 @@ impl<const N: usize> Program<N> {
                 (block.line, block.segment, block.flange_from_tcp, block.starts_at_rest);
             self.set_place(line, segment, tool);
             if from_rest && self.now >= self.move_start {
-                self.rate = Rate::constant(goal);
+                self.rate = Rate::constant(self.goal(goal, None));
             }
         }
     }
@@ -428,7 +548,9 @@ impl<const N: usize> Program<N> {
         if time < self.move_start
             && let Some((start, block)) = self.under_way(time)
         {
-            let (motion, position) = joint_motion(block, time - start, &self.ahead_position, kinematics)?;
+            let at = At { block, start, since: time - start };
+            let (motion, position) =
+                joint_motion(&at, &self.ahead_position, &self.corrections(), kinematics)?;
             self.ahead_position = position;
             return Ok(Some(motion));
         }
@@ -438,8 +560,9 @@ impl<const N: usize> Program<N> {
             let Command::Move(block) = self.nth(k) else { continue };
             let end = start + block.duration();
             if time < end {
-                let since = (time - start).max(0.0);
-                let (motion, position) = joint_motion(block, since, &self.ahead_position, kinematics)?;
+                let at = At { block, start, since: (time - start).max(0.0) };
+                let (motion, position) =
+                    joint_motion(&at, &self.ahead_position, &self.corrections(), kinematics)?;
                 self.ahead_position = position;
                 return Ok(Some(motion));
             }
@@ -449,15 +572,24 @@ impl<const N: usize> Program<N> {
     }
 }
 
-/// The joints' motion and position at a time since a block's start.
+/// An instant of a block.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct At<'a, const N: usize> {
+    pub(super) block: &'a Block<N>,
+    /// Programme time at which the block begins, and time since then.
+    pub(super) start: f64,
+    pub(super) since: f64,
+}
+
+/// The joints' motion and position at an instant of a block.
 pub(super) fn joint_motion<const N: usize, K: Kinematics<N>>(
-    block: &Block<N>,
-    since: f64,
+    at: &At<'_, N>,
     seed: &[f64; N],
+    corrections: &Corrections<'_, N>,
     kinematics: &K,
 ) -> Result<(JointMotion<N>, [f64; N]), Fault> {
-    let JointJet { position, velocity, acceleration, jerk } = joints_on(block, since, seed, kinematics)?;
-    let path = along_path(block, since);
+    let JointJet { position, velocity, acceleration, jerk } = joints_on(at, seed, corrections, kinematics)?;
+    let path = along_path(at.block, at.since);
     Ok((JointMotion { velocity, acceleration, jerk, path }, position))
 }
 
@@ -485,21 +617,27 @@ pub(super) fn along_path<const N: usize>(block: &Block<N>, time: f64) -> AlongPa
     }
 }
 
-/// The joints at a time since a block's start, in programme time, on the branch nearest to `seed`.
+/// The joints at an instant of a block, in programme time, on the branch nearest to `seed`; with what takes them off the planned motion.
 fn joints_on<const N: usize, K: Kinematics<N>>(
-    block: &Block<N>,
-    time: f64,
+    at: &At<'_, N>,
     seed: &[f64; N],
+    corrections: &Corrections<'_, N>,
     kinematics: &K,
 ) -> Result<JointJet<N>, Fault> {
-    match &block.motion {
+    let mut jet = match &at.block.motion {
         Motion::Joint(motion) => {
-            let state = motion.at_time(time);
+            let state = motion.at_time(at.since);
             let (position, velocity) = (state.position, state.velocity);
-            Ok(JointJet { position, velocity, acceleration: state.acceleration, jerk: state.jerk })
+            JointJet { position, velocity, acceleration: state.acceleration, jerk: state.jerk }
         }
-        Motion::Path(motion) => joints_of(&motion.flange(time), seed, kinematics),
+        Motion::Path(motion) => {
+            joints_of(&motion.flange_on_lane(at.since, corrections.lane), seed, kinematics)?
+        }
+    };
+    if let Some(fade) = corrections.fade {
+        fade.add(&mut jet, at.start + at.since);
     }
+    Ok(jet)
 }
 
 /// The joints where the flange moves like this, on the branch nearest to `seed`.

@@ -24,9 +24,10 @@ use recovery::{Instant, Recovery};
 mod bounds;
 mod recovery;
 
-/// Limits of the joints, per axis, all positive: velocity is kept by the plan, since r ≤ 1.
+/// Limits of the joints, per axis, all positive. Velocity is kept by the plan, since r ≤ 1; corrections of it are held against it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RateLimits<const N: usize> {
+    pub(super) velocity: [f64; N],
     pub(super) acceleration: [f64; N],
     pub(super) jerk: [f64; N],
 }

@@ -1,7 +1,7 @@
 //! Programme time run backward: the arm goes back over the moves that are done.
 
 use super::lookahead::{AlongPath, JointMotion, Lookahead};
-use super::program::{Arm, Follows, Program, along_path, joint_motion};
+use super::program::{Arm, At, Follows, Program, along_path, joint_motion};
 use super::rate::{Rate, RateLimits};
 use crate::kinematics::Kinematics;
 use crate::safety::Fault;
@@ -35,6 +35,9 @@ impl<const N: usize> Program<N> {
     /// Programme time that may still run backward: nothing is known before. Infinite where the moves remembered begin at rest, since the
     /// arm comes to rest there by itself.
     pub(super) fn remembered(&self) -> f64 {
+        if self.is_on_seam() && self.guide.is_at_memory_end() {
+            return 0.0;
+        }
         let oldest = self.done.oldest().map(|done| (done.start, &done.block));
         match oldest.or(self.head_move().map(|block| (self.move_start, block))) {
             Some((start, block)) if block.starts_at_rest && self.now > start => f64::INFINITY,
@@ -102,8 +105,8 @@ impl<const N: usize> Program<N> {
             let rests = time >= self.move_start || self.remembered() == f64::INFINITY;
             return Ok(rests.then_some(JointMotion::REST));
         };
-        let (motion, position) =
-            joint_motion(block, (time - start).min(block.duration()), &self.ahead_position, kinematics)?;
+        let at = At { block, start, since: (time - start).min(block.duration()) };
+        let (motion, position) = joint_motion(&at, &self.ahead_position, &self.corrections(), kinematics)?;
         self.ahead_position = position;
         Ok(Some(motion.reversed()))
     }

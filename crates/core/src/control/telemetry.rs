@@ -1,6 +1,7 @@
 //! What the cycle says about itself.
 
 use super::mode::{Event, Mode};
+use super::seam::SeamStatus;
 use crate::arc::ArcCommand;
 use crate::drive::JointCommand;
 use crate::geometry::Pose;
@@ -63,6 +64,8 @@ pub struct Status<const N: usize> {
     pub estimated: [f64; N],
     /// Tool centre point at the filtered measured joints.
     pub measured_base_from_tcp: Pose,
+    /// Where a seam is tracked. It is where the program is: ahead of the arm, with a prefilter.
+    pub seam: Option<SeamStatus>,
     /// Late cycles so far.
     pub overruns: u64,
     /// Time each of the [`STAGES`] took, in nanoseconds.

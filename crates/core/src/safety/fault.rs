@@ -2,6 +2,7 @@
 
 use crate::drive::DriveFault;
 use crate::geometry::Vector3;
+use crate::seam::Rejection;
 
 /// A fault found by the cycle. Joints are counted from 0; SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,6 +93,13 @@ pub enum Fault {
         /// Seconds without arc.
         seconds: f64,
     },
+    /// The seam is not seen any more.
+    SeamLost {
+        /// Coordinate of the weld up to which it was seen, in metres.
+        seen_to: f64,
+        /// Why the sensor's last reading was dropped; `None` where there was none.
+        dropped: Option<Rejection>,
+    },
 }
 
 /// How the arm is brought to rest, in the words of IEC 60204-1; from the mildest to the severest.
@@ -115,7 +123,8 @@ impl Fault {
             | Self::Overrun { .. }
             | Self::EmergencyStop
             | Self::ArcNotLit { .. }
-            | Self::ArcLost { .. } => StopCategory::Category2,
+            | Self::ArcLost { .. }
+            | Self::SeamLost { .. } => StopCategory::Category2,
             Self::PositionLimit { .. }
             | Self::VelocityLimit { .. }
             | Self::AccelerationLimit { .. }

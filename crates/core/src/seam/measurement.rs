@@ -100,13 +100,15 @@ pub enum Rejection {
     BeyondBound,
     /// It does not fit its neighbours on either side.
     Spike,
+    /// Farther aside than a seam can have gone since the last good reading.
+    Jump,
     /// On a tack weld.
     Tack,
 }
 
 impl Rejection {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::NotFinite,
         Self::OutOfRange,
         Self::LowQuality,
@@ -117,6 +119,7 @@ impl Rejection {
         Self::OffPath,
         Self::BeyondBound,
         Self::Spike,
+        Self::Jump,
         Self::Tack,
     ];
 
@@ -134,6 +137,7 @@ impl Rejection {
             Self::OffPath => "off the path",
             Self::BeyondBound => "beyond the bound",
             Self::Spike => "spike",
+            Self::Jump => "jumped aside",
             Self::Tack => "tack weld",
         }
     }

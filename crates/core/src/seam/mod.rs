@@ -45,7 +45,7 @@ pub use lane::{Lane, LaneJet, LaneRecord};
 pub use measurement::{Counts, Reading, Rejection, Sensor};
 pub use poses::Instant;
 pub use settings::{Budget, Filter, LostLane, Settings, SettingsError};
-pub use source::SeamSensor;
+pub use source::{NoSensor, SeamSensor};
 pub use tack::TackMask;
 pub use taught::{ChainError, Foot, PathChain, TaughtPath, foot};
 pub use tracker::{ControlPoint, Lost, SeamTracker};

@@ -58,15 +58,28 @@ pub(super) struct TackWatch {
     present: Option<(f64, f64)>,
     /// To where the last one's flank goes.
     flank_to: f64,
+    /// Where the last reading lay.
+    seen: f64,
 }
 
 impl TackWatch {
     pub(super) fn new(mask: TackMask) -> Self {
-        Self { mask, trend: Trend::default(), present: None, flank_to: f64::NEG_INFINITY }
+        Self {
+            mask,
+            trend: Trend::default(),
+            present: None,
+            flank_to: f64::NEG_INFINITY,
+            seen: f64::NEG_INFINITY,
+        }
     }
 
     pub(super) fn judge(&mut self, sighting: &Sighting) -> Verdict {
         let (s, height) = (sighting.s, sighting.offset.y);
+        // Behind a gap the height may be another one.
+        if self.present.is_none() && s - self.seen > TREND {
+            self.trend = Trend::default();
+        }
+        self.seen = s;
         let rise = self.trend.at(s).map_or(0.0, |level| height - level);
         match self.present {
             None if sighting.tack || rise > self.mask.rise => {
@@ -79,11 +92,11 @@ impl TackWatch {
                     self.present = Some((began, top.max(rise)));
                     return Verdict::Tack { flank_from: None };
                 }
-                *self = Self::new(self.mask);
+                *self = Self { seen: s, ..Self::new(self.mask) };
             }
             Some(_) => {
                 let flank_to = s + self.mask.margin;
-                *self = Self { flank_to, ..Self::new(self.mask) };
+                *self = Self { flank_to, seen: s, ..Self::new(self.mask) };
             }
             None => {}
         }

@@ -24,6 +24,10 @@ const PERIODS: f64 = 4.0;
 const MEETING: f64 = 8e-3;
 /// A jump of what is wanted up to this is left to the lane's smoothness, in metres.
 const SMALL: f64 = 0.1e-3;
+/// A seam goes aside by no more than this at once, in metres, and by no more than this share of the way: plates are misaligned by less, and
+/// what leads away faster is another edge.
+const JUMP: f64 = 3e-3;
+const SLANT: f64 = 0.2;
 /// Shares of the jerk: what a fade takes, and from where on what is wanted is faded to.
 const FADE_SHARE: f64 = 0.9;
 const ROUGH_SHARE: f64 = 0.9;
@@ -83,6 +87,10 @@ pub struct SeamTracker {
     course: Course,
     fade: Option<Fade>,
     counts: Counts,
+    /// The last reading that was let to the filter: its place and offset.
+    last_good: Option<(f64, Offset)>,
+    /// Why the last reading was dropped, if it was.
+    dropped: Option<Rejection>,
     /// Time of the last reading that was let to the gate.
     last_reading: Option<f64>,
     /// To where readings could be expected from the start.
@@ -114,6 +122,8 @@ impl SeamTracker {
             course: Course::Still(offset),
             fade: None,
             counts: Counts::default(),
+            last_good: None,
+            dropped: None,
             last_reading: None,
             expected_from: s + settings.sensor.look_ahead(),
             lost: None,
@@ -132,6 +142,12 @@ impl SeamTracker {
     #[must_use]
     pub fn counts(&self) -> &Counts {
         &self.counts
+    }
+
+    /// Why the last reading was dropped; `None` where it was believed, or there was none.
+    #[must_use]
+    pub fn last_rejection(&self) -> Option<Rejection> {
+        self.dropped
     }
 
     /// Set while the seam is lost.
@@ -177,6 +193,7 @@ impl SeamTracker {
     pub fn take(&mut self, path: &impl TaughtPath, reading: &Reading) -> Result<(), Rejection> {
         self.counts.taken += 1;
         let taken = self.sighting(path, reading).and_then(|sighting| self.gate.insert(sighting));
+        self.dropped = taken.err();
         match taken {
             Ok(()) => self.last_reading = self.poses.now(),
             Err(rejection) => self.counts.count(rejection),
@@ -207,7 +224,12 @@ impl SeamTracker {
     fn judge_one(&mut self, flush: bool) {
         let Some((sighting, good)) = self.gate.judge(flush) else { return };
         if !good {
+            self.dropped = Some(Rejection::Spike);
             return self.counts.count(Rejection::Spike);
+        }
+        if self.last_good.is_some_and(|last| jumps(last, &sighting)) {
+            self.dropped = Some(Rejection::Jump);
+            return self.counts.count(Rejection::Jump);
         }
         if let Some(tacks) = &mut self.tacks
             && let Verdict::Tack { flank_from } = tacks.judge(&sighting)
@@ -218,6 +240,7 @@ impl SeamTracker {
             }
             return;
         }
+        self.last_good = Some((sighting.s, sighting.offset));
         match &mut self.gathered {
             Gathered::Regression(bins) => bins.add(sighting.s, sighting.offset),
             Gathered::Mean(mean) => mean.add(sighting.s, sighting.offset),
@@ -341,6 +364,11 @@ impl SeamTracker {
         };
         (Curve::Constant(offset), Course::Still(offset))
     }
+}
+
+/// Whether the seam cannot have gone from one place to another.
+fn jumps((s, offset): (f64, Offset), to: &Sighting) -> bool {
+    (to.offset - offset).amax() > JUMP + SLANT * (to.s - s).abs()
 }
 
 /// What the lane is to follow.

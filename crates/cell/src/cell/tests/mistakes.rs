@@ -55,6 +55,30 @@ const MISTAKES: &[(&str, &str)] = &[
         "cell.toml:1:1: tool[5].x_mm: missing, expected a number from -100000 to 100000",
     ),
     (
+        "[sensor]\nsource = \"lidar\"\n",
+        "cell.toml:2:10: sensor.source: found \"lidar\", expected \"none\", \"simulated\", \"replay\" or \"egm\"",
+    ),
+    (
+        "[sensor]\nsource = \"replay\"\n",
+        "cell.toml:1:1: sensor.replay_file: missing, expected the recording that is replayed",
+    ),
+    (
+        "[sensor]\negm_client = \"localhost\"\n",
+        "cell.toml:2:14: sensor.egm_client: found \"localhost\", expected an address with a port, such as \"127.0.0.1:6510\"",
+    ),
+    (
+        "[[simulation.seam]]\nnumber = 1\nkind = \"wave\"\nat_mm = 0.0\n",
+        "cell.toml:3:8: simulation.seam[1].kind: found \"wave\", expected \"sine\", \"drift\", \"step\", \"kink\", \"tack\" or \"gap\"",
+    ),
+    (
+        "[[simulation.seam]]\nnumber = 1\nkind = \"gap\"\nat_mm = 10.0\nlength_mm = 0.0\n",
+        "cell.toml:5:13: simulation.seam[1].length_mm: found 0.0, expected a number from 0.1 to 100000",
+    ),
+    (
+        "[[simulation.seam]]\nnumber = 1\nkind = \"kink\"\nat_mm = 10.0\nlateral_deg = 60.0\n",
+        "cell.toml:5:15: simulation.seam[1].lateral_deg: found 60.0, expected a number from -45 to 45",
+    ),
+    (
         "[[simulation.fault]]\nnumber = 1\nkind = \"arc-loss\"\ntime_s = -1\n",
         "cell.toml:4:10: simulation.fault[1].time_s: found -1, expected a number from 0 to 1000000",
     ),

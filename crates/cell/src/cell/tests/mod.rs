@@ -99,7 +99,7 @@ fn every_key_of_the_default_has_an_effect() {
         assert!(effective, "{header}{line}: no other value changes the cell");
         tried += 1;
     }
-    assert_eq!(tried, 171);
+    assert_eq!(tried, 178);
 }
 
 /// Values of the same type to put in place of one in the default file.
@@ -118,6 +118,8 @@ fn other_values(value: &str) -> Vec<String> {
         "stop",
         "zv",
         "feedrate",
+        "simulated",
+        "127.0.0.1:7000",
     ];
     match value {
         "true" => vec!["false".into()],
@@ -295,7 +297,7 @@ fn the_examples_in_the_comments_are_right() {
         }
     }
     // The first example has a blank line in it and counts as two.
-    assert_eq!(examples, 8);
+    assert_eq!(examples, 10);
 }
 
 #[test]

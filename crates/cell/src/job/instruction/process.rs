@@ -112,7 +112,7 @@ pub struct WeaveTags {
     pub other_tags: Vec<String>,
 }
 
-/// Arc and weave.
+/// Arc, weave and seam tracking.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Weld {
     /// ARCON.
@@ -125,4 +125,8 @@ pub enum Weld {
     WeaveOn(Box<WeaveTags>),
     /// WVOF.
     WeaveOff,
+    /// COMARCON, with its tags: those of tracking through the arc.
+    TrackOn(Vec<String>),
+    /// COMARCOF.
+    TrackOff,
 }

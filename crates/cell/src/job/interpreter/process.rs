@@ -96,6 +96,8 @@ impl Interpreter {
             }
             Weld::WeaveOn(tags) => Action::WeaveOn(self.weave_condition(tags, world)?),
             Weld::WeaveOff => Action::WeaveOff,
+            Weld::TrackOn(_) => Action::TrackOn,
+            Weld::TrackOff => Action::TrackOff,
         };
         Ok(action.into())
     }

@@ -35,6 +35,8 @@ pub(super) const INSTRUCTIONS: &[&str] = &[
     "CASE",
     "CLEAR",
     "CNVRT",
+    "COMARCOF",
+    "COMARCON",
     "COS",
     "DEC",
     "DEFAULT",

@@ -18,6 +18,11 @@ pub(super) fn instruction(lexer: &mut Lexer<'_>, word: &str) -> Parsed<Option<In
             lexer.rest();
             Weld::WeaveOff
         }
+        "COMARCON" => Weld::TrackOn(track_tags(lexer)),
+        "COMARCOF" => {
+            lexer.rest();
+            Weld::TrackOff
+        }
         _ => return Ok(None),
     };
     Ok(Some(Instruction::Weld(weld)))
@@ -75,6 +80,12 @@ fn weave_tags(lexer: &mut Lexer<'_>) -> Parsed<WeaveTags> {
             _ => return Err(lexer.unexpected("a tag such as AMP= or WEV#(n)")),
         }
     }
+}
+
+/// All that stands in the line.
+fn track_tags(lexer: &mut Lexer<'_>) -> Vec<String> {
+    let rest = lexer.rest();
+    printable(rest).split_whitespace().map(str::to_owned).collect()
 }
 
 fn tag(lexer: &mut Lexer<'_>, what: &'static str, min: f64, max: f64) -> Parsed<Expression> {

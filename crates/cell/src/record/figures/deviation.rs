@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use seamline::geometry::{Pose, Rotation, Vector3};
-use seamline::path::{Arc, Curve, Measure, Orientation, Path};
+use seamline::path::{Arc, Curve, Measure, Orientation, Path, SeamFrame};
 
 /// Where a pose stands with respect to a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,6 +63,13 @@ impl Programmed {
             (s, position, distance)
         };
         Deviation { s, seam, distance, angle: (turned * self.programmed(s).inverse()).angle() }
+    }
+
+    /// Distance of a pose across from the coordinate `s` from where a correction (to the left, up; metres) puts it.
+    pub(super) fn beside(&self, pose: &Pose, s: f64, [lateral, height]: [f64; 2]) -> f64 {
+        let jet = self.path.seam_jet(s);
+        let aside = SeamFrame::of(&jet).map_or_else(Vector3::zeros, |at| at.vector([0.0, lateral, height]));
+        (pose.translation.vector - jet.pose.translation.vector - aside).norm()
     }
 
     /// The nearest point of the woven path, found by Gauss and Newton's method from a place near to it: its coordinate, the position without the

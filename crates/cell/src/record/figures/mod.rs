@@ -23,9 +23,9 @@ pub struct SeamFigures {
     pub lateral_max_mm: f64,
     /// Greatest correction in height.
     pub height_max_mm: f64,
-    /// Root mean square of the distance from the true seam, where it is known.
+    /// Root mean square of the distance from the true seam, where it is known: while the arc is lit, or in a run without arc all along.
     pub error_rms_mm: Option<f64>,
-    /// Greatest distance from the true seam, where it is known.
+    /// Greatest distance from the true seam, likewise.
     pub error_max_mm: Option<f64>,
 }
 
@@ -136,9 +136,24 @@ impl Analysis {
 struct SeamWatch {
     lateral: f64,
     height: f64,
-    error: f64,
+    all: Errors,
+    lit: Errors,
+}
+
+/// Distances from the true seam.
+#[derive(Debug, Clone, Copy, Default)]
+struct Errors {
+    greatest: f64,
     squares: f64,
-    known: u64,
+    count: u64,
+}
+
+impl Errors {
+    fn push(&mut self, error: f64) {
+        self.count += 1;
+        self.squares += error * error;
+        self.greatest = self.greatest.max(error.abs());
+    }
 }
 
 impl SeamWatch {
@@ -146,19 +161,21 @@ impl SeamWatch {
         self.lateral = self.lateral.max(sample.seam_lateral.abs());
         self.height = self.height.max(sample.seam_height.abs());
         if !sample.seam_error.is_nan() {
-            self.known += 1;
-            self.squares += sample.seam_error * sample.seam_error;
-            self.error = self.error.max(sample.seam_error.abs());
+            self.all.push(sample.seam_error);
+            if sample.arc {
+                self.lit.push(sample.seam_error);
+            }
         }
     }
 
     fn finish(self) -> Option<SeamFigures> {
-        let known = self.known > 0;
+        let errors = if self.lit.count > 0 { self.lit } else { self.all };
+        let known = errors.count > 0;
         (known || self.lateral > 0.0 || self.height > 0.0).then(|| SeamFigures {
             lateral_max_mm: self.lateral * 1e3,
             height_max_mm: self.height * 1e3,
-            error_rms_mm: known.then(|| (self.squares / self.known as f64).sqrt() * 1e3),
-            error_max_mm: known.then_some(self.error * 1e3),
+            error_rms_mm: known.then(|| (errors.squares / errors.count as f64).sqrt() * 1e3),
+            error_max_mm: known.then_some(errors.greatest * 1e3),
         })
     }
 }

@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::corner::CornerWatch;
 use super::deviation::{Deviation, Programmed};
 use super::joints::follows;
-use crate::record::info::{SegmentInfo, SegmentKind};
+use crate::record::info::{OnSeam, SegmentInfo, SegmentKind};
 use crate::record::sample::Sample;
 
 /// Figures of one executed segment. What a kind of segment does not have is left out.
@@ -190,7 +190,8 @@ impl Current {
             _ => None,
         };
         let corner = match &info.kind {
-            SegmentKind::Corner { corner, .. } => Some(CornerWatch::new(*corner)),
+            // A tracked seam passes a taught corner elsewhere.
+            SegmentKind::Corner { corner, .. } if info.seam == OnSeam::No => Some(CornerWatch::new(*corner)),
             _ => None,
         };
         Self {
@@ -226,14 +227,28 @@ impl Current {
             }
         }
         let Some(Deviation { s, distance, angle, .. }) = off else { return f64::NAN };
+        let distance = match (self.info.seam, &self.programmed) {
+            (OnSeam::No, _) => distance,
+            // A weave's plane goes with the tracked seam.
+            (OnSeam::Tracked, Some(programmed)) if !programmed.is_woven() => {
+                programmed.beside(&sample.tcp, s, [sample.seam_lateral, sample.seam_height])
+            }
+            _ => f64::NAN,
+        };
         let [from, to] = self.info.rounded;
-        if from <= s && s <= self.length - to {
+        if from <= s && s <= self.length - to && distance.is_finite() {
             let [most, turn] = self.off.unwrap_or_default();
             self.off = Some([most.max(distance), turn.max(angle)]);
         }
         // Both ends of the cycle must lie in the constant part, of this segment.
         let last_s = std::mem::replace(&mut self.last_s, s);
-        let constant = self.info.constant_part.is_some_and(|[from, to]| from <= last_s && s <= to);
+        // What fades of a correction has a speed of its own, and a weave about a tracked seam is not told from its travel.
+        let judged = match self.info.seam {
+            OnSeam::No => true,
+            OnSeam::Tracked => !is_woven,
+            OnSeam::Leaves => false,
+        };
+        let constant = judged && self.info.constant_part.is_some_and(|[from, to]| from <= last_s && s <= to);
         if let (true, Some(before), Some(speed_programmed)) = (constant, before, self.info.speed)
             && sample.mode == Mode::Running
             && before.segment == sample.segment

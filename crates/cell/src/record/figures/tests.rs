@@ -81,6 +81,7 @@ fn segment(path: Path, speed: f64, constant_part: Option<[f64; 2]>) -> SegmentIn
         arc: true,
         constant_part,
         rounded: [0.0; 2],
+        seam: crate::record::OnSeam::No,
     }
 }
 
@@ -249,6 +250,7 @@ fn events_and_verdict() {
         arc: true,
         constant_part: None,
         rounded: [0.0; 2],
+        seam: crate::record::OnSeam::No,
     };
     let run = |fault: bool| {
         let mut analysis = Analysis::new(&robot(2));

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant as Clock, SystemTime, UNIX_EPOCH};
 
 use prost::Message;
 use rtrb::{Consumer, Producer, RingBuffer};
-use seamline::seam::{Instant, Reading, SeamSensor};
+use seamline::seam::{Instant, Reading, SeamSensor, Sensor, TaughtPath};
 
 use super::gate::{Correction, DropReason, EgmGate, LENGTH_MAX};
 use super::messages;
@@ -125,6 +125,12 @@ impl EgmSensor {
         self.address
     }
 
+    /// Corrections that have come and wait for the cycle.
+    #[must_use]
+    pub fn waiting(&self) -> usize {
+        self.corrections.slots()
+    }
+
     /// What became of the datagrams so far.
     #[must_use]
     pub fn counts(&self) -> EgmCounts {
@@ -135,7 +141,7 @@ impl EgmSensor {
 
 impl SeamSensor for EgmSensor {
     /// Exposure is the cycle's time, less the age that the client states, less what passed since the datagram came.
-    fn poll(&mut self, torch: &Instant) -> Option<Reading> {
+    fn poll(&mut self, torch: &Instant, _: &Sensor, _: &impl TaughtPath) -> Option<Reading> {
         if torch.time != self.told {
             self.told = torch.time;
             // A thread that is behind gets a later state.

@@ -136,7 +136,7 @@ impl<'a> Simulation<'a> {
         while let Some(time) = self.ahead.wanted() {
             self.ahead.push(self.plan.motion(time));
         }
-        let limits = RateLimits { acceleration: ACCELERATION, jerk: JERK };
+        let limits = RateLimits { velocity: [f64::INFINITY; 3], acceleration: ACCELERATION, jerk: JERK };
         self.now += self.rate.advance(goal, self.now, &self.ahead, &limits, PERIOD);
         assert!((-1e-8..=1.0 + 1e-8).contains(&self.rate.value), "rate {}", self.rate.value);
         self.commands.push(self.plan.at(self.now).map(|axis| axis[0]));

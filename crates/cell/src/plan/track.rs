@@ -1,0 +1,303 @@
+//! Seam tracking in a job: what lies between COMARCON and COMARCOF is handed out together, with the taught path ahead of the motion.
+//!
+//! Runs in it that go on from each other without a kink are one **weld**. The laser sees the next run while the torch is still in this one, so
+//! that the taught path must be known ahead; a corner, a turn on the spot or a joint move ends the weld, and behind it the tracking begins anew.
+
+use seamline::control::{ActsOn, Block, Command, Motion, TAUGHT_PATHS, Tracked, Tracking};
+use seamline::geometry::Pose;
+use seamline::path::{Measure, Path};
+use seamline::seam::{Filter, LostLane, Offset, PathChain, Sensor, Settings, TackMask};
+
+use super::arm::PlanningArm;
+use super::error::{PlanError, Problem};
+use super::planner::{Planned, Planner};
+use super::run::Stops;
+use crate::cell::{self, Cell, LostSeam, SeamFilter, SensorSource};
+
+/// The taught path is known so far beyond what the sensor sees, in metres.
+const BEYOND: f64 = 0.05;
+/// It is kept so far behind the torch, in metres.
+const BEHIND: f64 = 0.05;
+/// Places of a path at which its curvature is looked at.
+const LOOKS: u32 = 32;
+/// Room that the planned speed leaves to rates below 1.
+const ROOM: f64 = 1.02;
+/// Coordinates nearer to each other than this are one, in metres.
+const SAME: f64 = 1e-9;
+/// Beside a tack its flanks are masked, in metres; and time without readings after which a seam is lost, in seconds.
+const FLANK: f64 = 2e-3;
+const SILENT: f64 = 2.0;
+
+/// What is between COMARCON and COMARCOF.
+#[derive(Debug, Clone)]
+pub(super) struct Section<const N: usize> {
+    /// COMARCOF has come.
+    closed: bool,
+    /// Coordinate at which the next path begins.
+    s: f64,
+    welds: Vec<Weld>,
+    held: Vec<Planned<N>>,
+    /// The weld that is tracked after all that was handed out, and how much of its path is known to the cycle.
+    on: Option<(usize, usize)>,
+}
+
+/// Runs along one seam.
+#[derive(Debug, Clone)]
+struct Weld {
+    /// The paths in order, each with the coordinate at which it begins.
+    taught: Vec<(Path, f64)>,
+    settings: Settings,
+    flange_from_tcp: Pose,
+    stop_after: Option<f64>,
+    /// It has been handed out, and its settings are fixed.
+    begun: bool,
+}
+
+impl<const N: usize> Section<N> {
+    fn new() -> Self {
+        Self { closed: false, s: 0.0, welds: Vec::new(), held: Vec::new(), on: None }
+    }
+
+    /// Hands out all that is held, with what the cycle must know for it.
+    fn hand_out(&mut self, out: &mut Vec<Planned<N>>) {
+        let mut held = std::mem::take(&mut self.held);
+        for planned in &mut held {
+            let commands = std::mem::take(&mut planned.commands);
+            for command in commands {
+                match &command {
+                    Command::Move(block) => self.prepare(block, &mut planned.commands),
+                    Command::TrackOff if self.on.take().is_none() => continue,
+                    _ => {}
+                }
+                planned.commands.push(command);
+            }
+        }
+        out.append(&mut held);
+    }
+
+    /// What must come before a block.
+    fn prepare(&mut self, block: &Block<N>, commands: &mut Vec<Command<N>>) {
+        let Some((from, to)) = tracked(block) else {
+            if self.on.take().is_some() {
+                commands.push(Command::TrackOff);
+            }
+            return;
+        };
+        let number = self.weld_at(from);
+        let Some(weld) = self.welds.get_mut(number) else { return };
+        let goes_on = self.on.filter(|(on, _)| *on == number);
+        if self.on.is_some() && goes_on.is_none() {
+            commands.push(Command::TrackOff);
+        }
+        let first = weld.taught.partition_point(|(_, start)| *start <= from + SAME).saturating_sub(1);
+        let mut known = goes_on.map_or(first, |(_, known)| known);
+        let seen = to + weld.settings.sensor.look_ahead() + BEYOND;
+        while let Some((path, start)) = weld.taught.get(known).filter(|(_, start)| *start < seen) {
+            commands.push(Command::Taught { path: *path, start: *start });
+            known += 1;
+        }
+        if goes_on.is_none() {
+            let Weld { settings, flange_from_tcp, stop_after, .. } = *weld;
+            commands.push(Command::TrackOn(Tracking { settings, start: from, flange_from_tcp, stop_after }));
+        }
+        weld.begun = true;
+        self.on = Some((number, known));
+    }
+
+    /// The weld that a coordinate lies in, by its number.
+    fn weld_at(&self, s: f64) -> usize {
+        let begins = |weld: &Weld| weld.taught.first().is_some_and(|(_, start)| *start <= s + SAME);
+        self.welds.partition_point(begins).saturating_sub(1)
+    }
+}
+
+/// From where to where along the weld a block leads, where it is tracked.
+fn tracked<const N: usize>(block: &Block<N>) -> Option<(f64, f64)> {
+    let Motion::Path(motion) = &block.motion else { return None };
+    let start = motion.tracked?.start;
+    let at = |time: f64| start + motion.state(time).position;
+    Some((at(0.0), at(motion.duration())))
+}
+
+impl Weld {
+    /// Whether a path goes on from it, and the cycle may still be told what that asks for.
+    fn takes(&self, path: &Path, settings: &Settings, tool: &Pose) -> bool {
+        let Some((last, _)) = self.taught.last() else { return false };
+        let mut chain = PathChain::<2>::new(0.0);
+        let smooth = chain.push(last).is_ok() && chain.push(path).is_ok();
+        let known = settings.speed <= self.settings.speed && settings.curvature <= self.settings.curvature;
+        smooth && *tool == self.flange_from_tcp && (known || !self.begun)
+    }
+
+    /// The most paths that the cycle must know at a time.
+    fn most_paths(&self) -> usize {
+        let reach = self.settings.sensor.look_ahead() + BEYOND;
+        let end = |(path, start): &(Path, f64)| start + path.length();
+        let seen = |of: &(Path, f64)| {
+            let (from, to) = (of.1 - BEHIND, end(of) + reach);
+            self.taught.iter().filter(|other| end(other) >= from && other.1 <= to).count()
+        };
+        self.taught.iter().map(seen).max().unwrap_or(0)
+    }
+}
+
+/// Greatest curvature of a path's seam, in 1/m.
+fn curvature(path: &Path) -> f64 {
+    let at = |look: u32| path.seam_jet(path.length() * f64::from(look) / f64::from(LOOKS)).linear[1].norm();
+    (0..=LOOKS).map(at).fold(0.0, f64::max)
+}
+
+/// What the cell says of tracking at a speed along paths of a curvature, in metres per second and 1/m.
+fn settings(cell: &Cell, sensor: Sensor, speed: f64, curvature: f64) -> Settings {
+    let cell::Sensor { filter, change_per_cycle, correction_max, lost, tack, .. } = cell.sensor;
+    let or_never = |value: f64| if value > 0.0 { value } else { f64::INFINITY };
+    Settings {
+        period: cell.cycle.period,
+        filter: match filter {
+            SeamFilter::Regression => Filter::Regression,
+            SeamFilter::Mean { readings } => Filter::Mean { readings: readings as usize },
+        },
+        bound: correction_max,
+        saturation: change_per_cycle,
+        jerk: cell.cartesian.correction_jerk,
+        curvature,
+        lost: match lost {
+            LostSeam::Stop => LostLane::Hold,
+            LostSeam::TaughtPath => LostLane::Taught,
+        },
+        lost_time: SILENT,
+        tacks: Some(TackMask {
+            rise: or_never(tack.rise),
+            gap_below: tack.gap,
+            quality_below: tack.quality,
+            margin: FLANK,
+            longest: tack.longest,
+        }),
+        ..Settings::new(sensor, speed)
+    }
+}
+
+/// The cell's sensor on a torch that stands where a path begins.
+fn mounted(cell: &Cell, path: &Path) -> Result<Sensor, Problem> {
+    let sensor = &cell.sensor;
+    let mounting = Sensor::mounting(&path.seam_jet(0.0), sensor.look_ahead);
+    let along = "a seam cannot be tracked within 6° of the wire's direction";
+    Ok(Sensor {
+        tcp_from_sensor: mounting.ok_or_else(|| Problem::Track(along.into()))?,
+        range: Offset::repeat(sensor.range),
+        rate: sensor.rate_hz,
+        latency: sensor.latency,
+        age_max: sensor.age_max,
+        quality_min: sensor.quality_min,
+    })
+}
+
+impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
+    /// COMARCON: what follows is tracked.
+    pub(super) fn track_on(&mut self) -> Result<(), Problem> {
+        if self.cell.sensor.source == SensorSource::None {
+            return Err(Problem::Track(
+                "the cell has no seam sensor: expected sensor.source \"simulated\", \"replay\" or \"egm\""
+                    .into(),
+            ));
+        }
+        if self.run.smear.is_some() && self.run.acts_on == ActsOn::Feedrate {
+            return Err(Problem::Track(
+                "a seam cannot be tracked behind a prefilter on the feedrate: expected on = \"joints\" in [vibration]".into(),
+            ));
+        }
+        self.section.get_or_insert_with(Section::new);
+        Ok(())
+    }
+
+    /// COMARCOF.
+    pub(super) fn track_off(&mut self, planned: &mut Planned<N>) {
+        if let Some(section) = &mut self.section {
+            section.closed = true;
+            self.beside = true;
+            planned.commands.push(Command::TrackOff);
+        }
+    }
+
+    /// Whether a run is held until it is known to its end, since a seam is tracked.
+    pub(super) fn tracks(&self) -> bool {
+        self.section.as_ref().is_some_and(|section| !section.closed)
+    }
+
+    /// Passes on what has been handed out, or keeps it until the tracking ends.
+    pub(super) fn pass_on(&mut self, parts: Vec<Planned<N>>, finish: bool, out: &mut Vec<Planned<N>>) {
+        let Some(section) = &mut self.section else { return out.extend(parts) };
+        section.held.extend(parts);
+        if finish || section.closed {
+            section.hand_out(out);
+        }
+        if section.closed {
+            self.section = None;
+        }
+    }
+
+    /// Why the robot stops before a path while it tracks: a corner ends a weld.
+    pub(super) fn corner_of_seam(&self, path: &Path) -> Option<Stops> {
+        let last = &self.run.last()?.path;
+        let mut chain = PathChain::<2>::new(0.0);
+        let smooth = chain.push(last).is_ok() && chain.push(path).is_ok();
+        (self.tracks() && !smooth).then_some(Stops("the tracked seam has a corner here"))
+    }
+
+    /// Has the run, which is known to its end, follow the seam.
+    pub(super) fn track_run(&mut self) -> Result<(), PlanError> {
+        if !self.tracks() || self.run.is_empty() {
+            return Ok(());
+        }
+        let mut section = self.section.take();
+        let result = section.as_mut().map_or(Ok(()), |section| self.track_in(section));
+        self.section = section;
+        result.map_err(|(index, problem)| self.give_up(index, problem))
+    }
+
+    fn track_in(&mut self, section: &mut Section<N>) -> Result<(), (usize, Problem)> {
+        let first = |problem| (0, problem);
+        let pieces: Vec<(Path, f64)> =
+            self.run.placed().map(|(_, piece)| (piece.path.seam(), piece.limits.speed)).collect();
+        if pieces.iter().any(|(path, _)| path.measure() != Measure::Length) {
+            return Ok(());
+        }
+        let speed = pieces.iter().map(|(_, speed)| *speed).fold(0.0, f64::max);
+        let bend = pieces.iter().map(|(path, _)| curvature(path)).fold(0.0, f64::max);
+        let Some((path, _)) = pieces.first() else { return Ok(()) };
+        let settings = settings(self.cell, mounted(self.cell, path).map_err(first)?, speed, bend);
+        settings.check().map_err(|error| first(Problem::Track(error.to_string())))?;
+        let tool = self.tool.flange_from_tcp;
+        if !section.welds.last().is_some_and(|weld| weld.takes(path, &settings, &tool)) {
+            let stop_after = (self.cell.sensor.lost == LostSeam::Stop).then_some(self.cell.sensor.trend);
+            let taught = Vec::new();
+            self.beside = !section.welds.is_empty();
+            section.welds.push(Weld { taught, settings, flange_from_tcp: tool, stop_after, begun: false });
+        }
+        let Some(weld) = section.welds.last_mut() else { return Ok(()) };
+        if !weld.begun {
+            weld.settings.speed = weld.settings.speed.max(speed);
+            weld.settings.curvature = weld.settings.curvature.max(bend);
+            weld.settings.check().map_err(|error| first(Problem::Track(error.to_string())))?;
+        }
+        // On the inner side of a bend the torch travels less than the taught path is long.
+        let headroom = ROOM / (1.0 - bend * settings.bound);
+        let mut s = section.s;
+        let mut starts = Vec::with_capacity(pieces.len());
+        for (path, _) in &pieces {
+            weld.taught.push((*path, s));
+            starts.push(Tracked { start: s, headroom });
+            s += path.length();
+        }
+        section.s = s;
+        if weld.most_paths() > TAUGHT_PATHS {
+            let text = format!(
+                "the tracked seam has more than {TAUGHT_PATHS} moves in the {:.0} mm that are known ahead",
+                (settings.sensor.look_ahead() + BEYOND) * 1e3
+            );
+            return Err(first(Problem::Track(text)));
+        }
+        self.run.track(&starts);
+        Ok(())
+    }
+}

@@ -1,0 +1,279 @@
+//! Seam tracking in the cycle: readings come in, the lane is frozen ahead of the torch, and the joints follow the corrected path.
+//!
+//! A tracked weld is planned on the taught path somewhat faster than programmed; programme time then runs just so fast that the torch travels
+//! along the *tracked* seam as programmed. Where the tracking ends, the arm stands beside the taught path: it goes from there, and the
+//! difference fades out of the joints on the moves that follow.
+
+use super::block::{Block, Motion, PathMotion};
+use super::rate::RateLimits;
+use crate::geometry::{Pose, PoseJet, Vector3};
+use crate::kinematics::JointJet;
+use crate::math::float::cbrt;
+use crate::path::{Path, SeamFrame};
+use crate::safety::Fault;
+use crate::seam::{
+    Counts, Instant, Lane, LaneJet, Offset, PathChain, SeamSensor, SeamTracker, Settings, TaughtPath,
+    corrected, speed_factor,
+};
+
+/// Paths of the weld that are known ahead of the torch, at most.
+pub const TAUGHT_PATHS: usize = 48;
+/// Readings that are taken in one cycle; more wait for the next.
+const READINGS: usize = 16;
+/// The taught path is kept so far behind the torch, in metres.
+const KEPT: f64 = 0.05;
+/// So near to the end of what the lane remembers, backing up ends; metres.
+const LANE_END: f64 = 0.02;
+/// While a difference fades, programme time runs at this rate at most: what moves follow then leaves this much of the limits ...
+const FADE_RATE: f64 = 0.75;
+/// ... of velocity, acceleration and jerk to the difference.
+const FADE_SHARES: [f64; 3] = [0.24, 0.42, 0.56];
+/// Shortest fade, in seconds.
+const FADE_LEAST: f64 = 0.1;
+/// Greatest derivatives of 10x³ − 15x⁴ + 6x⁵.
+const FADE_PEAKS: [f64; 3] = [1.875, 5.774, 60.0];
+/// A difference of the joints up to this is none, in radians or metres.
+const SAME: f64 = 1e-9;
+/// What is travelled is told as what was asked for if it differs by less than this share: beyond, the rate is changing.
+const STEADY: f64 = 0.02;
+
+/// How a seam is tracked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tracking {
+    /// Sensor, filter, bounds.
+    pub settings: Settings,
+    /// Coordinate of the weld at which it begins, in metres.
+    pub start: f64,
+    /// Tool centre point in the flange frame.
+    pub flange_from_tcp: Pose,
+    /// So far beyond the last place where the seam was seen the torch stops, in metres; `None` where it goes on.
+    pub stop_after: Option<f64>,
+}
+
+/// That a path of a block follows the tracked seam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tracked {
+    /// Coordinate of the weld at which the path begins, in metres.
+    pub start: f64,
+    /// By which factor the planned speed is above the programmed one.
+    pub headroom: f64,
+}
+
+/// What the cycle tells of the tracking.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SeamStatus {
+    /// Coordinate of the weld, in metres.
+    pub s: f64,
+    /// The correction in effect.
+    pub offset: Offset,
+    /// What became of the readings.
+    pub counts: Counts,
+    /// The seam is out of sight.
+    pub lost: bool,
+    /// The torch moves along the tracked seam.
+    pub on_seam: bool,
+}
+
+/// What takes the joints off the planned motion.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Corrections<'a, const N: usize> {
+    pub(super) lane: Option<&'a Lane>,
+    pub(super) fade: Option<&'a Fade<N>>,
+}
+
+/// A difference of the joints that fades out in programme time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Fade<const N: usize> {
+    difference: [f64; N],
+    start: f64,
+    duration: f64,
+}
+
+/// The tracker with the taught path ahead of the torch.
+#[derive(Debug, Clone)]
+pub(super) struct SeamGuide {
+    tracker: Option<SeamTracker>,
+    tracking: Option<Tracking>,
+    taught: PathChain<TAUGHT_PATHS>,
+    /// Coordinate of the taught path's end; `None` where the next path begins another one.
+    taught_to: Option<f64>,
+    /// Where the torch stopped last without the seam: told to go on, it may go as far again.
+    stopped: f64,
+    /// Readings are taken.
+    on: bool,
+    s: f64,
+}
+
+impl SeamGuide {
+    /// Nothing is tracked.
+    pub(super) fn new() -> Self {
+        Self {
+            tracker: None,
+            tracking: None,
+            taught: PathChain::new(0.0),
+            taught_to: None,
+            stopped: f64::NEG_INFINITY,
+            on: false,
+            s: 0.0,
+        }
+    }
+
+    /// The taught path goes on from a coordinate. A path that the planner should not have sent is left out: the seam is not seen there.
+    pub(super) fn teach(&mut self, path: &Path, start: f64) {
+        if self.taught_to.is_none_or(|end| (start - end).abs() > SAME) {
+            self.taught = PathChain::new(start);
+        }
+        if self.taught.push(path).is_ok() {
+            self.taught_to = Some(start + path.length());
+        }
+    }
+
+    /// Tracking begins with the tool centre point at a place: gives the motion of the corrected path there.
+    pub(super) fn begin(&mut self, tracking: &Tracking, tcp: &Vector3) -> PoseJet {
+        let jet = self.taught.jet(tracking.start);
+        let off = tcp - jet.pose.translation.vector;
+        let offset = SeamFrame::of(&jet)
+            .map_or_else(Offset::zeros, |frame| Offset::new(off.dot(&frame.y), off.dot(&frame.z)));
+        self.tracker = SeamTracker::try_new(&tracking.settings, tracking.start, offset).ok();
+        (self.tracking, self.on, self.s) = (Some(*tracking), true, tracking.start);
+        self.stopped = f64::NEG_INFINITY;
+        correct(&jet, self.lane(), tracking.start)
+    }
+
+    /// Readings are taken no longer; the lane stays for the way back.
+    pub(super) fn end(&mut self) {
+        (self.on, self.taught_to) = (false, None);
+    }
+
+    pub(super) fn is_on(&self) -> bool {
+        self.on
+    }
+
+    pub(super) fn lane(&self) -> Option<&Lane> {
+        self.tracker.as_ref().map(SeamTracker::lane)
+    }
+
+    /// The lane's memory ends here, going back.
+    pub(super) fn is_at_memory_end(&self) -> bool {
+        let start = self.tracking.map_or(0.0, |tracking| tracking.start);
+        self.lane().is_some_and(|lane| lane.known_from() > start && self.s - lane.known_from() < LANE_END)
+    }
+
+    /// One cycle: the torch is where the measurement says. Takes what the sensor has.
+    pub(super) fn sense(&mut self, torch: &Instant, sensor: &mut impl SeamSensor) {
+        let (true, Some(tracker), Some(tracking)) = (self.on, &mut self.tracker, &self.tracking) else {
+            return;
+        };
+        self.s = torch.s;
+        self.taught.drop_before(torch.s - KEPT);
+        let path_end = self.taught_to.unwrap_or(torch.s);
+        tracker.step(torch.time, torch.s, &torch.base_from_tcp, path_end);
+        for _ in 0..READINGS {
+            let Some(reading) = sensor.poll(torch, &tracking.settings.sensor, &self.taught) else { break };
+            // What is wrong with it is counted.
+            let _ = tracker.take(&self.taught, &reading);
+        }
+    }
+
+    /// The fault of a seam that is out of sight, once the torch has come as far without it as it may.
+    pub(super) fn lost(&mut self) -> Option<Fault> {
+        let (tracker, tracking) = (self.tracker.as_ref()?, self.tracking.filter(|_| self.on)?);
+        let (lost, after) = (tracker.lost()?, tracking.stop_after?);
+        if self.s < tracker.seen_to().max(self.stopped) + after {
+            return None;
+        }
+        self.stopped = self.s;
+        Some(Fault::SeamLost { seen_to: lost.seen_to, dropped: tracker.last_rejection() })
+    }
+
+    /// The rate of programme time at which the torch travels as programmed; 1 off the seam.
+    pub(super) fn rate<const N: usize>(&self, block: &Block<N>, time: f64) -> f64 {
+        let Motion::Path(motion) = &block.motion else { return 1.0 };
+        let Some(tracked) = motion.tracked else { return 1.0 };
+        let s = motion.state(time).position;
+        let (factor, _) = speed_factor(&correct(&motion.path.seam_jet(s), self.lane(), tracked.start + s));
+        (1.0 / (tracked.headroom * factor)).min(1.0)
+    }
+
+    pub(super) fn status(&self, s: f64, on_seam: bool) -> Option<SeamStatus> {
+        let tracker = self.tracker.as_ref().filter(|_| self.on)?;
+        let offset = lane_jet(Some(tracker.lane()), s).offset;
+        Some(SeamStatus { s, offset, counts: *tracker.counts(), lost: tracker.lost().is_some(), on_seam })
+    }
+
+    /// The coordinate where the torch was last.
+    pub(super) fn coordinate(&self) -> f64 {
+        self.s
+    }
+}
+
+/// The lane at a coordinate: as frozen, ahead of that as it would go on.
+fn lane_jet(lane: Option<&Lane>, s: f64) -> LaneJet {
+    lane.and_then(|lane| lane.at(s).or_else(|| lane.expected(s))).unwrap_or(LaneJet::TAUGHT)
+}
+
+fn correct(taught: &PoseJet, lane: Option<&Lane>, s: f64) -> PoseJet {
+    corrected(taught, &lane_jet(lane, s)).unwrap_or(*taught)
+}
+
+impl PathMotion {
+    /// The flange's motion in programme time at a time since the block's start, on the lane where the path is tracked.
+    pub(super) fn flange_on_lane(&self, time: f64, lane: Option<&Lane>) -> PoseJet {
+        let Some(tracked) = self.tracked else { return self.flange(time) };
+        let state = self.state(time);
+        let s = state.position;
+        let seam = correct(&self.path.seam_jet(s), lane, tracked.start + s);
+        let tcp = self.path.weave_about(&seam, s);
+        tcp.in_time([state.velocity, state.acceleration, state.jerk]).attached(self.tcp_from_flange())
+    }
+}
+
+impl<const N: usize> Fade<N> {
+    /// A difference that fades from a programme time on, so slowly that it takes its share of the limits. `None` where there is none.
+    pub(super) fn new(difference: [f64; N], start: f64, limits: &RateLimits<N>) -> Option<Self> {
+        if difference.iter().all(|q| q.abs() <= SAME) {
+            return None;
+        }
+        let [v, a, j] = [0, 1, 2].map(|order| FADE_PEAKS[order] / FADE_SHARES[order]);
+        let time = |axis: usize| {
+            let q = difference[axis].abs();
+            let RateLimits { velocity, acceleration, jerk } = limits;
+            let slow = q * v / velocity[axis];
+            let gentle = crate::math::float::sqrt(q * a / acceleration[axis]);
+            slow.max(gentle).max(cbrt(q * j / jerk[axis]))
+        };
+        let duration = (0..N).map(time).fold(FADE_LEAST, f64::max);
+        Some(Self { difference, start, duration })
+    }
+
+    /// The greatest rate of programme time at a time.
+    pub(super) fn rate(&self, time: f64) -> f64 {
+        if time >= self.start && time < self.start + self.duration { FADE_RATE } else { 1.0 }
+    }
+
+    /// Adds what is left of the difference at a programme time.
+    pub(super) fn add(&self, jet: &mut JointJet<N>, time: f64) {
+        let x = (time - self.start) / self.duration;
+        if !(0.0..1.0).contains(&x) {
+            return;
+        }
+        let y = 1.0 - x;
+        let rate = 1.0 / self.duration;
+        let left = 1.0 - x * x * x * (10.0 + x * (6.0 * x - 15.0));
+        let d1 = -30.0 * x * x * y * y * rate;
+        let d2 = -60.0 * x * y * (1.0 - 2.0 * x) * rate * rate;
+        let d3 = -60.0 * (1.0 - 6.0 * x * y) * rate * rate * rate;
+        for (axis, q) in self.difference.iter().enumerate() {
+            jet.position[axis] += q * left;
+            jet.velocity[axis] += q * d1;
+            jet.acceleration[axis] += q * d2;
+            jet.jerk[axis] += q * d3;
+        }
+    }
+}
+
+/// The rate as the operator knows it: what share of full speed it is.
+pub(super) fn shown_rate(rate: f64, full: f64, asked: f64) -> f64 {
+    let share = rate / full;
+    if (share - asked).abs() <= STEADY * asked { asked } else { share.min(1.0) }
+}
