@@ -12,7 +12,7 @@
 //! v (L − D) before the place to v D behind it; `docs/vibration.md` has the derivation. Neither a pause nor override changes anything about
 //! that, if a change of the rate keeps the same limits along the path.
 
-use seamline::control::{ActsOn, Command, TRACK_MOVES};
+use seamline::control::{ActsOn, Command, RAIL_MOVES};
 use seamline::kinematics::JointJet;
 use seamline::path::Path;
 
@@ -160,11 +160,11 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
                     self.run.laid.clear();
                 }
                 self.run.laid.push_back(block.duration());
-                if self.run.laid.len() > TRACK_MOVES {
+                if self.run.laid.len() > RAIL_MOVES {
                     self.run.laid.pop_front();
                     // The tool may still be on the move before the oldest of these.
                     if self.run.laid.iter().sum::<f64>() < smear.length {
-                        let problem = Problem::ShortMoves { most: TRACK_MOVES, seconds: smear.length };
+                        let problem = Problem::ShortMoves { most: RAIL_MOVES, seconds: smear.length };
                         return Err(PlanError { at: part.at.clone(), problem });
                     }
                 }

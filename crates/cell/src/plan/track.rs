@@ -3,7 +3,7 @@
 //! Runs in it that go on from each other without a kink are one **weld**. The laser sees the next run while the torch is still in this one, so
 //! that the taught path must be known ahead; a corner, a turn on the spot or a joint move ends the weld, and behind it the tracking begins anew.
 
-use seamline::control::{ActsOn, Block, Command, Motion, TAUGHT_PATHS, Tracked, Tracking};
+use seamline::control::{Block, Command, Motion, TAUGHT_PATHS, Tracked, Tracking};
 use seamline::geometry::Pose;
 use seamline::path::{Measure, Path};
 use seamline::seam::{Filter, LostLane, Offset, PathChain, Sensor, Settings, TackMask};
@@ -199,11 +199,6 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             return Err(Problem::Track(
                 "the cell has no seam sensor: expected sensor.source \"simulated\", \"replay\" or \"egm\""
                     .into(),
-            ));
-        }
-        if self.run.smear.is_some() && self.run.acts_on == ActsOn::Feedrate {
-            return Err(Problem::Track(
-                "a seam cannot be tracked behind a prefilter on the feedrate: expected on = \"joints\" in [vibration]".into(),
             ));
         }
         self.section.get_or_insert_with(Section::new);

@@ -30,7 +30,7 @@ pub fn describe(fault: &Fault, joints: &[JointInfo]) -> String {
         Fault::NoInverse { position } => at("no joint solution", &position),
         Fault::NotFinite { axis } => format!("joint {} is not a number", joint(axis)),
         Fault::Starved => "no motion planned ahead".into(),
-        Fault::TrackForgotten { moves } => {
+        Fault::PathForgotten { moves } => {
             format!("more than {moves} moves within the length of the prefilter on the feedrate")
         }
         Fault::Drive(DriveFault::Silent) => "drives silent".into(),

@@ -14,7 +14,9 @@ use seamline_cell::run::{Devices, Machine, MonotonicClock};
 use seamline_cell::sensor::{CellSensor, SimulatedSeam};
 use seamline_cell::sim::{SimulatedArc, SimulatedDrive};
 
-use crate::bench::{Ar2010, Random, commands, independent_forward, independent_torch, planned, worst_shares};
+use crate::bench::{
+    Ar2010, Random, commands, independent_forward, independent_torch, on_feedrate, planned, worst_shares,
+};
 
 const MM: f64 = 1e-3;
 /// Look-ahead and 15 mm: what lies before is not seen in time.
@@ -354,4 +356,19 @@ fn a_tack_weld_is_told_by_what_the_cell_says() {
     assert!(eventful(1, TACK, "[sensor]\ntack_rise_mm = 0.0\n") > 1.0);
     assert!(eventful(1, TACK, "[sensor]\ntack_rise_mm = 0.0\ntack_gap_mm = 0.5\n") <= 0.1);
     assert!(eventful(1, TACK, "[sensor]\ntack_rise_mm = 0.0\ntack_quality = 0.7\n") <= 0.1);
+}
+
+/// Behind a prefilter on the feedrate the torch is on its seam as well, with a weave the joints keep their limits too, and the way off the seam
+/// fades on paths and moves of the joints.
+#[test]
+fn the_seam_is_kept_behind_a_prefilter_on_the_feedrate() {
+    for taught in [Taught::Line, Taught::Arc] {
+        let mut cell = cell(3, "");
+        cell.vibration = on_feedrate("fir-zvd", &[8.0]).vibration;
+        let weld = Weld::new(taught, 20.0, cell.clone());
+        let of = figures(&weld, &weld.run(), 20.0);
+        println!("{taught:?}: {of:?}");
+        assert!(of.rms <= 0.015 && of.max <= 0.08, "{taught:?}: {of:?}");
+        Weld::with(taught, &taught.job(20.0, "WVON WEV#(1)\n", "WVOF\n"), cell).run();
+    }
 }

@@ -137,7 +137,7 @@ pub struct PathMotion {
     pub jerk: f64,
     /// Where the path follows a tracked seam.
     pub tracked: Option<Tracked>,
-    tcp_from_flange: Pose,
+    pub(super) tcp_from_flange: Pose,
     pieces: [TimingPiece; BLOCK_PIECES],
     /// When each piece begins, in seconds from the block's start.
     starts: [f64; BLOCK_PIECES],
@@ -202,19 +202,10 @@ impl PathMotion {
     /// The flange's motion in programme time at a time since the block's start, without the correction of a tracked seam.
     #[must_use]
     pub fn flange(&self, time: f64) -> PoseJet {
-        flange_on(&self.path, &self.tcp_from_flange, &self.state(time))
+        let state = self.state(time);
+        let tcp = self.path.jet(state.position).in_time([state.velocity, state.acceleration, state.jerk]);
+        tcp.attached(&self.tcp_from_flange)
     }
-
-    /// Flange in the tool's frame.
-    pub(super) fn tcp_from_flange(&self) -> &Pose {
-        &self.tcp_from_flange
-    }
-}
-
-/// The flange's motion where the tool centre point moves along a path in a certain state.
-pub(super) fn flange_on(path: &Path, tcp_from_flange: &Pose, state: &PathState) -> PoseJet {
-    let tcp = path.jet(state.position).in_time([state.velocity, state.acceleration, state.jerk]);
-    tcp.attached(tcp_from_flange)
 }
 
 impl<const N: usize> Block<N> {

@@ -6,10 +6,10 @@ use super::mode::{Event, Mode};
 use super::off_path::OffPath;
 use super::prefilter::{ActsOn, JointPrefilter, PrefilterEntry, Progress};
 use super::program::{Arm, CommandSource, Follows, Program, joints_of};
+use super::rails::{OnRails, RAIL_MOVES};
 use super::rate::RateLimits;
 use super::resume::Resume;
 use super::telemetry::{CycleOutput, StageClock, Status};
-use super::track::{OnTrack, TRACK_MOVES};
 use super::trail::Mark;
 use crate::arc::ArcCommand;
 use crate::drive::{DriveFault, JointCommand};
@@ -419,20 +419,25 @@ where
 
     /// The command in real time, as the prefilters let it through.
     fn shaped(&mut self, jet: &JointJet<N>) -> Result<JointCommand<N>, Fault> {
-        let command = self.in_time(jet);
+        let command = in_time(jet, self.program.time_rate());
         let shaped = self.prefilter.update(&command, &self.progress());
         (self.mark, self.tool_way, self.rate) = (shaped.mark, shaped.tool_way, shaped.rate);
         if self.prefilter.acts_on() != Some(ActsOn::Feedrate) {
             return Ok(shaped.command);
         }
         match self.program.on_course(shaped.course) {
-            OnTrack::Joints => Ok(shaped.command),
-            OnTrack::Path(flange) => {
+            OnRails::Joints => Ok(shaped.command),
+            OnRails::Path(flange) => {
                 let JointJet { position, velocity, acceleration, .. } =
                     joints_of(&flange, &self.command.position, &self.kinematics)?;
-                Ok(JointCommand { position, velocity, acceleration })
+                let mut command = JointCommand { position, velocity, acceleration };
+                let [time, rate, slope] = shaped.time;
+                if let Some(aside) = self.program.aside(time) {
+                    add(&mut command, &in_time(&aside, (rate, slope)));
+                }
+                Ok(command)
             }
-            OnTrack::Forgotten => Err(Fault::TrackForgotten { moves: TRACK_MOVES }),
+            OnRails::Forgotten => Err(Fault::PathForgotten { moves: RAIL_MOVES }),
         }
     }
 
@@ -440,18 +445,8 @@ where
     fn progress(&self) -> Progress {
         let (course, since) = self.program.course();
         let (mark, rate) = (self.program.place().mark, self.program.shown_rate());
-        Progress { mark, since, course, tool_way: self.program.way().tool, rate }
-    }
-
-    /// Joint motion in real time: programme time runs at the rate.
-    fn in_time(&self, jet: &JointJet<N>) -> JointCommand<N> {
-        let (r, c) = self.program.time_rate();
-        let mut command = JointCommand::at_rest(jet.position);
-        for axis in 0..N {
-            command.velocity[axis] = jet.velocity[axis] * r;
-            command.acceleration[axis] = jet.acceleration[axis] * r * r + jet.velocity[axis] * c;
-        }
-        command
+        let time = [self.program.now, self.program.time_rate().0, self.program.time_rate().1];
+        Progress { mark, since, course, tool_way: self.program.way().tool, rate, time }
     }
 
     /// Events that the motion itself causes.
@@ -523,5 +518,23 @@ where
         let arc = ArcCommand { on: welds && self.arc.has_current(), setting };
         let power = self.mode != Mode::Disabled && !cut;
         CycleOutput { command: self.command, power, arc, status }
+    }
+}
+
+/// Joint motion in real time: programme time runs at a rate with its derivative.
+fn in_time<const N: usize>(jet: &JointJet<N>, (rate, slope): (f64, f64)) -> JointCommand<N> {
+    let mut command = JointCommand::at_rest(jet.position);
+    for axis in 0..N {
+        command.velocity[axis] = jet.velocity[axis] * rate;
+        command.acceleration[axis] = jet.acceleration[axis] * rate * rate + jet.velocity[axis] * slope;
+    }
+    command
+}
+
+fn add<const N: usize>(command: &mut JointCommand<N>, other: &JointCommand<N>) {
+    for axis in 0..N {
+        command.position[axis] += other.position[axis];
+        command.velocity[axis] += other.velocity[axis];
+        command.acceleration[axis] += other.acceleration[axis];
     }
 }

@@ -22,8 +22,10 @@ pub struct JointSignal<const N: usize> {
     course: [f64; 3],
     /// Way of the tool along its paths since the program's start.
     tool_way: f64,
-    /// Rate of programme time.
+    /// Rate of programme time that is told.
     rate: f64,
+    /// Programme time, its rate and the rate's derivative.
+    time: [f64; 3],
 }
 
 impl<const N: usize> Signal for JointSignal<N> {
@@ -34,6 +36,7 @@ impl<const N: usize> Signal for JointSignal<N> {
         course: [0.0; 3],
         tool_way: 0.0,
         rate: 0.0,
+        time: [0.0; 3],
     };
 
     #[inline]
@@ -44,6 +47,7 @@ impl<const N: usize> Signal for JointSignal<N> {
         self.course.add(share, &other.course);
         self.tool_way += share * other.tool_way;
         self.rate += share * other.rate;
+        self.time.add(share, &other.time);
     }
 }
 
@@ -79,8 +83,9 @@ pub enum ActsOn {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shaped<const N: usize> {
     pub(super) command: JointCommand<N>,
-    /// How far the course has come, its velocity and acceleration.
+    /// How far the course has come, and programme time, with their first two derivatives.
     pub(super) course: [f64; 3],
+    pub(super) time: [f64; 3],
     /// The place of the program that the arm has come to, the way of the tool up to there, and the rate at which it goes on.
     pub(super) mark: Mark,
     pub(super) tool_way: f64,
@@ -96,6 +101,8 @@ pub(super) struct Progress {
     pub(super) course: [f64; 3],
     pub(super) tool_way: f64,
     pub(super) rate: f64,
+    /// Programme time, its rate and the rate's derivative.
+    pub(super) time: [f64; 3],
 }
 
 impl<const N: usize, M> JointPrefilter<N, M> {
@@ -144,26 +151,26 @@ impl<const N: usize, M: AsRef<[PrefilterEntry<N>]> + AsMut<[PrefilterEntry<N>]>>
 
     /// At rest at a position, where the program is.
     pub(super) fn reset(&mut self, position: [f64; N], progress: &Progress) {
-        let Progress { mark, course, tool_way, rate, .. } = *progress;
-        let course = [course[0], 0.0, 0.0];
-        let signal = JointSignal { position, course, tool_way, rate, ..JointSignal::ZERO };
+        let Progress { mark, course, tool_way, rate, time, .. } = *progress;
+        let [course, time] = [course, time].map(|of| [of[0], 0.0, 0.0]);
+        let signal = JointSignal { position, course, tool_way, rate, time, ..JointSignal::ZERO };
         self.stages.iter_mut().flatten().for_each(|stage| stage.reset(&signal));
         self.trail.reset(mark);
     }
 
     /// One cycle.
     pub(super) fn update(&mut self, command: &JointCommand<N>, progress: &Progress) -> Shaped<N> {
-        let Progress { mark, since, course, tool_way, rate } = *progress;
+        let Progress { mark, since, course, tool_way, rate, time } = *progress;
         if self.is_none() {
-            return Shaped { command: *command, course, mark, tool_way, rate };
+            return Shaped { command: *command, course, time, mark, tool_way, rate };
         }
         let JointCommand { position, velocity, acceleration } = *command;
-        let mut signal = JointSignal { position, velocity, acceleration, course, tool_way, rate };
+        let mut signal = JointSignal { position, velocity, acceleration, course, tool_way, rate, time };
         for stage in self.stages.iter_mut().flatten() {
             signal = stage.update(&signal);
         }
-        let JointSignal { position, velocity, acceleration, course, tool_way, rate } = signal;
+        let JointSignal { position, velocity, acceleration, course, tool_way, rate, time } = signal;
         let command = JointCommand { position, velocity, acceleration };
-        Shaped { command, course, mark: self.trail.pass(mark, since, course[0]), tool_way, rate }
+        Shaped { command, course, time, mark: self.trail.pass(mark, since, course[0]), tool_way, rate }
     }
 }

@@ -3,9 +3,9 @@
 use super::block::{Block, Command, Motion};
 use super::history::{Done, History};
 use super::lookahead::{AlongPath, JointMotion, Lookahead};
+use super::rails::{OnRails, Rails};
 use super::rate::{Rate, RateLimits};
 use super::seam::{Corrections, Fade, SeamGuide, SeamStatus, Tracking, shown_rate};
-use super::track::{OnTrack, Track};
 use super::trail::{Mark, Way};
 use crate::geometry::{Pose, PoseJet};
 use crate::kinematics::{JointJet, Kinematics};
@@ -39,7 +39,7 @@ pub(super) struct Program<const N: usize> {
     pub(super) arriving: bool,
     pub(super) done: History<N>,
     /// What the moves done ran along.
-    track: Track,
+    rails: Rails,
     /// Programme time runs backward; the look-ahead then counts from the time given down.
     pub(super) backward: Option<f64>,
     /// Way of the tool at which the arc was last lit.
@@ -98,7 +98,7 @@ impl<const N: usize> Program<N> {
             way_before: Way::default(),
             arriving: false,
             done: History::new(),
-            track: Track::new(),
+            rails: Rails::new(),
             backward: None,
             arc_way: 0.0,
             dwell_left: None,
@@ -201,7 +201,7 @@ impl<const N: usize> Program<N> {
                 let position = joints_on(&at, &self.position, &self.corrections(), kinematics)?.position;
                 let way_after = self.way_before.plus(way);
                 self.done.push(Done { start: self.move_start, way: self.way_before, block: *block });
-                self.track.lay(block, self.way_before.path, way_after.path);
+                self.rails.lay(block, self.way_before.path, way_after.path);
                 (self.position, self.move_start, self.way_before) = (position, end, way_after);
                 self.arriving = rests && arm.motion != Follows::AtOnce;
                 self.pop(goal);
@@ -295,14 +295,14 @@ impl<const N: usize> Program<N> {
     }
 
     /// What the program has at a place of its course that it has passed, with the course's velocity and acceleration.
-    pub(super) fn on_course(&self, course: [f64; 3]) -> OnTrack {
+    pub(super) fn on_course(&self, course: [f64; 3]) -> OnRails {
         let way = if self.backward.is_some() { course.map(|x| -x) } else { course };
         // Also where the arm has yet to come to rest: going back, it comes from there.
         let head = match self.head() {
             Some(Command::Move(block)) => Some((self.way_before.path, block)),
             _ => None,
         };
-        self.track.at(way, head)
+        self.rails.at(way, head, self.guide.lane())
     }
 
     /// Path covered up to the start of the move under way, and up to its end.
@@ -322,6 +322,14 @@ impl<const N: usize> Program<N> {
 
     pub(super) fn corrections(&self) -> Corrections<'_, N> {
         Corrections { lane: self.guide.lane(), fade: self.fade.as_ref() }
+    }
+
+    /// What takes the joints off the paths at a programme time, after a seam was tracked.
+    pub(super) fn aside(&self, time: f64) -> Option<JointJet<N>> {
+        let fade = self.fade.as_ref()?;
+        let mut jet = JointJet::at_rest([0.0; N]);
+        fade.add(&mut jet, time);
+        Some(jet)
     }
 
     /// The rate at which a share of full speed is kept: on a tracked seam the torch's own speed along it counts.
@@ -630,9 +638,7 @@ fn joints_on<const N: usize, K: Kinematics<N>>(
             let (position, velocity) = (state.position, state.velocity);
             JointJet { position, velocity, acceleration: state.acceleration, jerk: state.jerk }
         }
-        Motion::Path(motion) => {
-            joints_of(&motion.flange_on_lane(at.since, corrections.lane), seed, kinematics)?
-        }
+        Motion::Path(motion) => joints_of(&motion.flange_on(at.since, corrections.lane), seed, kinematics)?,
     };
     if let Some(fade) = corrections.fade {
         fade.add(&mut jet, at.start + at.since);

@@ -9,7 +9,7 @@ use super::rate::RateLimits;
 use crate::geometry::{Pose, PoseJet, Vector3};
 use crate::kinematics::JointJet;
 use crate::math::float::cbrt;
-use crate::path::{Path, SeamFrame};
+use crate::path::{Path, PathState, SeamFrame};
 use crate::safety::Fault;
 use crate::seam::{
     Counts, Instant, Lane, LaneJet, Offset, PathChain, SeamSensor, SeamTracker, Settings, TaughtPath,
@@ -216,15 +216,44 @@ fn correct(taught: &PoseJet, lane: Option<&Lane>, s: f64) -> PoseJet {
     corrected(taught, &lane_jet(lane, s)).unwrap_or(*taught)
 }
 
+/// What the tool moves along, and how the flange goes with it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rail {
+    path: Path,
+    tracked: Option<Tracked>,
+    tcp_from_flange: Pose,
+}
+
+impl Rail {
+    pub(super) fn of(motion: &PathMotion) -> Self {
+        Self { path: motion.path, tracked: motion.tracked, tcp_from_flange: motion.tcp_from_flange }
+    }
+
+    /// Length of the path.
+    pub(super) fn length(&self) -> f64 {
+        self.path.length()
+    }
+
+    /// The flange's motion in a state of the path, on the lane where the path is tracked.
+    pub(super) fn flange(&self, state: &PathState, lane: Option<&Lane>) -> PoseJet {
+        on_seam(&self.path, self.tracked.as_ref(), state, lane).attached(&self.tcp_from_flange)
+    }
+}
+
+/// The motion of the tool centre point in a state of a path, on the lane where the path is tracked.
+fn on_seam(path: &Path, tracked: Option<&Tracked>, state: &PathState, lane: Option<&Lane>) -> PoseJet {
+    let s = state.position;
+    let tcp = match tracked {
+        None => path.jet(s),
+        Some(tracked) => path.weave_about(&correct(&path.seam_jet(s), lane, tracked.start + s), s),
+    };
+    tcp.in_time([state.velocity, state.acceleration, state.jerk])
+}
+
 impl PathMotion {
     /// The flange's motion in programme time at a time since the block's start, on the lane where the path is tracked.
-    pub(super) fn flange_on_lane(&self, time: f64, lane: Option<&Lane>) -> PoseJet {
-        let Some(tracked) = self.tracked else { return self.flange(time) };
-        let state = self.state(time);
-        let s = state.position;
-        let seam = correct(&self.path.seam_jet(s), lane, tracked.start + s);
-        let tcp = self.path.weave_about(&seam, s);
-        tcp.in_time([state.velocity, state.acceleration, state.jerk]).attached(self.tcp_from_flange())
+    pub(super) fn flange_on(&self, time: f64, lane: Option<&Lane>) -> PoseJet {
+        on_seam(&self.path, self.tracked.as_ref(), &self.state(time), lane).attached(&self.tcp_from_flange)
     }
 }
 

@@ -70,7 +70,7 @@ pub enum Fault {
     /// The queue ran empty in the middle of a motion.
     Starved,
     /// More moves than the cycle remembers lie within the length of the prefilters on the feedrate.
-    TrackForgotten {
+    PathForgotten {
         /// How many it remembers.
         moves: usize,
     },
@@ -133,7 +133,7 @@ impl Fault {
             | Self::NotFinite { .. }
             | Self::NoInverse { .. }
             | Self::Starved
-            | Self::TrackForgotten { .. } => StopCategory::Category1,
+            | Self::PathForgotten { .. } => StopCategory::Category1,
         }
     }
 }
