@@ -109,6 +109,44 @@ fn nor_does_a_tracked_weld() {
     }
 }
 
+/// Tracked, weaving welds round an arc behind prefilters for two modes, on the joints and on the feedrate, with overrides and pauses: a million cycles.
+#[test]
+fn nor_do_a_million_with_everything_on() {
+    for prefiltered in [flexible, on_feedrate] {
+        let mut cell = seam::cell(0, "");
+        cell.vibration = prefiltered("fir-zvd", &[6.34, 17.0]).vibration;
+        cell.arc.lock_override = false;
+        let job = Taught::Arc.job(50.0, "ARCON ASF#(1)\nWVON WEV#(2)\n", "WVOF\nARCOF AEF#(1)\n");
+        let weld = Weld::with(Taught::Arc, &job, cell);
+        let (mut cycles, mut tracked, mut slowest) = (0_u64, 0_u64, Vec::new());
+        while cycles < CYCLES / 2 {
+            let mut machine = weld.machine();
+            ARMED.set(true);
+            for k in 0_u64.. {
+                match k % 4_000 {
+                    1_000 => machine.set_override(0.3),
+                    1_600 => machine.set_override(1.0),
+                    3_000 => machine.request(Event::Hold),
+                    3_500 => machine.request(Event::Resume),
+                    _ => {}
+                }
+                let (output, _) = machine.cycle();
+                assert_eq!(output.status.fault, None);
+                cycles += 1;
+                tracked += u64::from(output.status.seam.is_some_and(|seam| seam.on_seam));
+                if output.status.mode == Mode::Standstill {
+                    break;
+                }
+            }
+            ARMED.set(false);
+            slowest.extend(machine.stage_times().pop());
+        }
+        assert_eq!(COUNT.get(), 0, "allocations and releases in {cycles} cycles");
+        assert!(2 * tracked > cycles, "{tracked} of {cycles}");
+        println!("computing time of a cycle, µs, of the last weld: {:?}", slowest.last());
+    }
+}
+
 fn run(cell: &Cell) {
     let arm = Arm::from_cell(cell).unwrap();
     let commands = commands(cell, &arm);
