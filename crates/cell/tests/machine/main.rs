@@ -20,6 +20,7 @@ mod pause;
 mod prefilter;
 mod recorded;
 mod seam;
+mod seam_moves;
 mod seam_sensors;
 mod seam_stops;
 mod weave;

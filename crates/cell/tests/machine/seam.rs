@@ -162,6 +162,11 @@ impl Weld {
         Self { taught, commands: commands(&parts), cell, arm }
     }
 
+    /// With an arc over the 300 mm.
+    pub(crate) fn lit(taught: Taught, mm_s: f64, cell: Cell) -> Self {
+        Self::with(taught, &taught.job(mm_s, "ARCON ASF#(1)\n", "ARCOF AEF#(1)\n"), cell)
+    }
+
     /// Why a job is refused.
     pub(crate) fn refused(job: &str, cell: &Cell) -> String {
         let arm: Ar2010 = Arm::from_cell(cell).unwrap();

@@ -1,0 +1,271 @@
+//! Around a tracked weld: corners, moves away from it, a second weld, backing up, override, stops off the path, and seams that lead too far.
+
+use nalgebra::Vector3;
+use seamline::control::{CycleOutput, Event, Mode};
+use seamline::safety::Fault;
+use seamline_cell::cell::Cell;
+use seamline_cell::sensor::SimulatedSeam;
+
+use crate::bench::{Random, worst_shares};
+use crate::seam::{RUN_IN, SeamMachine, Taught, Weld, cell, tool};
+
+const MM: f64 = 1e-3;
+
+/// A job with positions in mm (x, y, z and the turn about z in degrees) and a program that refers to them.
+fn job(positions: &[[f64; 4]], program: &str) -> String {
+    let lines: String = positions
+        .iter()
+        .enumerate()
+        .map(|(k, [x, y, z, turn])| format!("C{k:05}={x:.3},{y:.3},{z:.3},180.0000,0.0000,{turn:.4}\n"))
+        .collect();
+    format!(
+        "/JOB\n//NAME SEAM\n//POS\n///NPOS {},0,0,0,0,0\n///TOOL 0\n///POSTYPE ROBOT\n///RECTAN\n///RCONF 1,0,0,0,0,0,0,0\n{lines}\
+         //INST\n///DATE 2026/01/01 00:00\n///ATTR SC,RW\n///GROUP1 RB1\nNOP\n{program}END\n",
+        positions.len()
+    )
+}
+
+/// A run whose commands are kept.
+struct Run {
+    machine: Box<SeamMachine>,
+    joints: Vec<[f64; 6]>,
+    /// Coordinate of the weld and correction, where the torch moves on it.
+    seam: Vec<Option<(f64, [f64; 2])>>,
+}
+
+impl Run {
+    fn new(weld: &Weld) -> Self {
+        Self { machine: Box::new(weld.machine()), joints: Vec::new(), seam: Vec::new() }
+    }
+
+    fn cycle(&mut self) -> CycleOutput<6> {
+        let (output, _) = self.machine.cycle();
+        self.joints.push(output.command.position);
+        let seam = output.status.seam.filter(|seam| seam.on_seam);
+        self.seam.push(seam.map(|seam| (seam.s, [seam.offset.x, seam.offset.y])));
+        output
+    }
+
+    fn until(&mut self, done: impl Fn(&CycleOutput<6>) -> bool) -> CycleOutput<6> {
+        for _ in 0..100_000 {
+            let output = self.cycle();
+            if done(&output) {
+                return output;
+            }
+        }
+        panic!("it does not come to that: {:?}", self.seam.last());
+    }
+
+    fn to_end(&mut self) {
+        let end =
+            self.until(|output| output.status.mode == Mode::Standstill || output.status.fault.is_some());
+        assert_eq!(end.status.fault, None);
+    }
+
+    fn assert_within_limits(&self, weld: &Weld) {
+        let shares = worst_shares(&self.joints, &weld.arm, weld.cell.cycle.period);
+        assert!(shares[0] <= 1.0 && shares[1] <= 1.001 && shares[2] <= 1.01, "{shares:?}");
+    }
+
+    fn tool(&self, cycle: usize) -> Vector3<f64> {
+        tool(&self.joints[cycle]).translation.vector
+    }
+
+    /// From where to where along the weld the torch was, in one piece each.
+    fn pieces(&self) -> Vec<[f64; 2]> {
+        let mut pieces: Vec<[f64; 2]> = Vec::new();
+        let mut on = false;
+        for seam in &self.seam {
+            match (seam, pieces.last_mut()) {
+                (Some((s, _)), Some(piece)) if on => piece[1] = *s,
+                (Some((s, _)), _) => pieces.push([*s, *s]),
+                (None, _) => {}
+            }
+            on = seam.is_some();
+        }
+        pieces
+    }
+}
+
+/// An L of 120 mm each with the seam 3 mm beside it and 2 mm above: the robot stops at the corner, and behind it the torch is on the seam again after
+/// a run-in. In between the height stays, and away from the seam the joints' limits hold at full speed.
+#[test]
+fn a_corner_ends_a_weld_and_begins_another() {
+    let points = [
+        [1100.0, -100.0, -250.0, 0.0],
+        [1100.0, -100.0, -300.0, 0.0],
+        [1100.0, 20.0, -300.0, 0.0],
+        [1000.0, 20.0, -300.0, 0.0],
+        [880.0, 20.0, -300.0, 0.0],
+    ];
+    let program = "MOVJ C00000 VJ=20.00\nMOVL C00001 V=100.0 PL=0\nCOMARCON\nMOVL C00002 V=20.0\nMOVL C00003 V=20.0\nMOVL C00004 V=20.0\n\
+                   COMARCOF\nMOVJ C00000 VJ=100.00\nMOVJ C00001 VJ=100.00 PL=0\n";
+    let features = "[simulation]\nlaser_noise_mm = 0.0\n[[simulation.seam]]\nnumber = 1\nkind = \"drift\"\nat_mm = -10.0\nlength_mm = 1.0\nlateral_mm = 3.0\nheight_mm = 2.0\n";
+    let text = format!("{features}[sensor]\nsource = \"simulated\"\n");
+    let weld = Weld::with(Taught::Line, &job(&points, program), Cell::parse(&text, "cell.toml").unwrap());
+    let mut run = Run::new(&weld);
+    run.to_end();
+    run.assert_within_limits(&weld);
+    let seam = SimulatedSeam { features: weld.cell.simulation.seam.clone() };
+    let on_seam = |range: [f64; 2]| {
+        let within = run.seam.iter().flatten().filter(|(s, _)| range[0] < *s && *s < range[1]);
+        within.map(|(s, c)| (c[0] - seam.offset(*s).x).hypot(c[1] - seam.offset(*s).y)).fold(0.0, f64::max)
+    };
+    assert!(on_seam([RUN_IN, 0.12]) < 0.05 * MM && on_seam([0.12 + RUN_IN, 0.34]) < 0.05 * MM);
+    let heights = run.seam.iter().flatten().filter(|(s, _)| *s > RUN_IN).map(|(_, c)| c[1]);
+    assert!(heights.fold(f64::INFINITY, f64::min) > 1.9 * MM);
+    // It really stands at the corner.
+    let slowest = (1..run.joints.len())
+        .filter(|&k| run.seam[k].is_some_and(|(s, _)| (0.1..0.14).contains(&s)))
+        .map(|k| (run.tool(k) - run.tool(k - 1)).norm())
+        .fold(f64::INFINITY, f64::min);
+    assert!(slowest < 1e-7, "{slowest}");
+}
+
+/// Two welds with COMARCON each, a joint move at full speed between them, and a turn on the spot in the second: each is tracked by itself, the
+/// coordinate counts anew, and the limits hold.
+#[test]
+fn welds_follow_each_other() {
+    let points = [
+        [1100.0, -100.0, -250.0, 0.0],
+        [1100.0, -100.0, -300.0, 0.0],
+        [1100.0, 0.0, -300.0, 0.0],
+        [1000.0, -100.0, -300.0, 0.0],
+        [1000.0, 0.0, -300.0, 0.0],
+        [1000.0, 0.0, -300.0, 10.0],
+        [1000.0, 100.0, -300.0, 10.0],
+    ];
+    let program = "MOVJ C00000 VJ=20.00\nMOVL C00001 V=100.0 PL=0\nCOMARCON\nMOVL C00002 V=30.0 PL=0\nCOMARCOF\nMOVJ C00003 VJ=100.00 PL=0\n\
+                   COMARCON\nMOVL C00004 V=30.0 PL=0\nMOVL C00005 VR=20.0 PL=0\nMOVL C00006 V=30.0 PL=0\nCOMARCOF\nMOVJ C00000 VJ=100.00\n";
+    let weld = Weld::with(Taught::Line, &job(&points, program), cell(4, ""));
+    let mut run = Run::new(&weld);
+    run.to_end();
+    run.assert_within_limits(&weld);
+    let pieces = run.pieces();
+    let near =
+        |piece: [f64; 2], from: f64, to: f64| (piece[0] - from).abs() < 1e-3 && (piece[1] - to).abs() < 1e-3;
+    let [first, second, third] = pieces[..] else { panic!("{pieces:?}") };
+    assert!(near(first, 0.0, 0.1) && near(second, 0.0, 0.1) && near(third, 0.1, 0.2), "{pieces:?}");
+    let corrected = run.seam.iter().flatten().filter(|(s, _)| *s > RUN_IN).map(|(_, c)| c[0].hypot(c[1]));
+    assert!(corrected.fold(0.0, f64::max) > 3.0 * MM);
+}
+
+/// Backing up at random instants of a tracked weld and of the moves behind it, override up and down: on the same path to a micrometre, within the limits.
+#[test]
+fn backing_up_and_override_keep_the_path() {
+    let weld = Weld::new(Taught::Arc, 40.0, cell(6, "[arc]\nlock_override = false\n"));
+    let mut whole = Run::new(&weld);
+    whole.to_end();
+    let mut random = Random(8);
+    let (mut backed, mut beside) = (0, 0.0_f64);
+    for _ in 0..10 {
+        let mut run = Run::new(&weld);
+        let stop = random.within(2_000.0, whole.joints.len() as f64 - 50.0) as usize;
+        let change = stop - random.within(10.0, 1_500.0) as usize;
+        for k in 0..stop {
+            if k == change {
+                run.machine.set_override(random.within(0.1, 0.9));
+            }
+            run.cycle();
+        }
+        run.machine.request(Event::Hold);
+        run.until(|output| output.status.at_rest);
+        let rest = run.joints.len() - 1;
+        run.machine.request(Event::BackUp);
+        for _ in 0..(random.within(50.0, 3_000.0) as usize) {
+            assert_eq!(run.cycle().status.fault, None);
+        }
+        run.machine.request(Event::Hold);
+        run.until(|output| output.status.at_rest);
+        let back = run.joints.len() - 1;
+        backed += usize::from((run.tool(back) - run.tool(rest)).norm() > 2.0 * MM);
+        run.machine.set_override(1.0);
+        run.machine.request(Event::Resume);
+        run.to_end();
+        run.assert_within_limits(&weld);
+        // On the way back, and forward again: on the way there.
+        let there: Vec<Vector3<f64>> = (0..=rest).map(|k| run.tool(k)).collect();
+        let off = |p: &Vector3<f64>| {
+            let chord = |w: &[Vector3<f64>]| {
+                let (way, off) = (w[1] - w[0], p - w[0]);
+                let share =
+                    if way.norm() > 0.0 { (off.dot(&way) / way.norm_squared()).clamp(0.0, 1.0) } else { 0.0 };
+                (off - way * share).norm()
+            };
+            there.windows(2).map(chord).fold(f64::INFINITY, f64::min)
+        };
+        for k in (rest..back).step_by(25) {
+            beside = beside.max(off(&run.tool(k)));
+        }
+    }
+    println!("{backed} of 10 backed, {beside:.1e} m beside at most");
+    assert!(backed >= 6 && beside <= 1e-6, "{backed} {beside}");
+}
+
+/// A seam that leads out of the workspace: a fault with its name and the arc out, and a stop within the limits.
+#[test]
+fn a_seam_that_leads_too_far_stops_the_arm() {
+    let down = "[[simulation.seam]]\nnumber = 1\nkind = \"drift\"\nat_mm = 100.0\nlength_mm = 100.0\nheight_mm = -9.0\n";
+    let text = format!(
+        "{down}[sensor]\nsource = \"simulated\"\n[safety]\nworkspace_min_mm = [-2500.0, -2500.0, -305.0]\n"
+    );
+    let weld = Weld::lit(Taught::Line, 20.0, Cell::parse(&text, "cell.toml").unwrap());
+    let mut run = Run::new(&weld);
+    let fault = run.until(|output| output.status.fault.is_some());
+    assert!(matches!(fault.status.fault, Some(Fault::Workspace { .. })), "{:?}", fault.status.fault);
+    assert!(!fault.arc.on);
+    run.until(|output| output.status.at_rest);
+    let lowest = run.tool(run.joints.len() - 1).z;
+    assert!((-0.3055..-0.3045).contains(&lowest), "{lowest}");
+    run.assert_within_limits(&weld);
+}
+
+/// A stop off the path at random instants of a tracked weld: after the reset the torch comes back to the corrected path and goes on.
+#[test]
+fn after_a_stop_off_the_path_the_torch_comes_back_to_the_seam() {
+    let weld = Weld::lit(Taught::Arc, 40.0, cell(9, ""));
+    let mut random = Random(12);
+    for _ in 0..6 {
+        let mut run = Run::new(&weld);
+        run.until(|output| output.status.seam.is_some_and(|seam| seam.on_seam && seam.s > RUN_IN));
+        (0..random.within(400.0, 5_000.0) as usize).for_each(|_| {
+            run.cycle();
+        });
+        let left = run.joints.len() - 1;
+        run.machine.raise(Fault::Starved);
+        let stop = run.until(|output| output.status.mode == Mode::Fault && output.status.at_rest);
+        assert!(!stop.arc.on);
+        assert!((run.tool(run.joints.len() - 1) - run.tool(left)).norm() > 0.01 * MM);
+        run.machine.request(Event::Reset);
+        run.cycle();
+        run.machine.request(Event::Resume);
+        run.until(|output| output.status.mode == Mode::Running);
+        // With its overlap behind the place where it was left.
+        let here = run.tool(run.joints.len() - 1);
+        let near = (0..left).map(|k| (run.tool(k) - here).norm()).fold(f64::INFINITY, f64::min);
+        assert!(near < 0.03 * MM && (here - run.tool(left)).norm() > 5.0 * MM, "{near}");
+        run.to_end();
+        run.assert_within_limits(&weld);
+    }
+}
+
+/// A weld of 1.1 m: backing up ends where the lane's memory does, half a metre back, and the weld goes on from there.
+#[test]
+fn backing_up_ends_with_what_the_lane_remembers() {
+    let points = [[900.0, -550.0, -250.0, 0.0], [900.0, -550.0, -300.0, 0.0], [900.0, 550.0, -300.0, 0.0]];
+    let program =
+        "MOVJ C00000 VJ=20.00\nMOVL C00001 V=100.0 PL=0\nCOMARCON\nMOVL C00002 V=50.0 PL=0\nCOMARCOF\n";
+    let weld = Weld::with(Taught::Line, &job(&points, program), cell(2, ""));
+    let mut run = Run::new(&weld);
+    run.until(|output| output.status.seam.is_some_and(|seam| seam.s > 0.9));
+    run.machine.request(Event::Hold);
+    run.until(|output| output.status.at_rest);
+    run.machine.request(Event::BackUp);
+    run.cycle();
+    let back = run.until(|output| output.status.at_rest && output.status.mode == Mode::Holding);
+    let s = back.status.seam.unwrap().s;
+    assert!(back.status.fault.is_none() && (0.4..0.45).contains(&s), "{s}");
+    run.machine.request(Event::Resume);
+    run.to_end();
+    run.assert_within_limits(&weld);
+}
