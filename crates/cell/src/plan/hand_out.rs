@@ -49,7 +49,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let passed = last.filter(|(_, pass)| pass.is_some()).map(|(step, _)| step.clone());
         self.end_joint_move(out);
         self.weave_run(out)?;
-        self.track_run()?;
+        self.track_run(out)?;
         self.advance(true, out)?;
         if let (Some(Stops(why)), Some(Step { at, action: Action::Move(r#move), .. })) = (stop, passed) {
             let text = format!("the robot stops exactly on this point ({}): {why}", r#move.zone);

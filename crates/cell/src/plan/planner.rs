@@ -354,9 +354,7 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         if link.path.length() == 0.0 {
             return self.take_move_without_way(&link, out);
         }
-        if let Some(stops) = self.corner_of_seam(&link.path) {
-            self.end_run(Some(stops), out)?;
-        }
+        self.run.most_bent = self.most_bent();
         let rests = link.pass.is_none() || !link.travels();
         if !link.travels() && !self.run.is_empty() {
             self.end_run(Some(Stops("the next move turns on the spot")), out)?;

@@ -94,6 +94,8 @@ pub(super) struct Run<const N: usize> {
     pub(super) laid: VecDeque<f64>,
     /// How it would come to rest from there, as planned when less of it was known.
     pub(super) way_to_rest: Vec<TimingPiece>,
+    /// Greatest curvature of a corner that is passed, in 1/m.
+    pub(super) most_bent: f64,
     /// How many times as far as usual the next look goes: where a nearer one settled nothing, it would find the same again.
     pub(super) farther: f64,
 }
@@ -132,7 +134,8 @@ impl<const N: usize> Run<N> {
     pub(super) fn new(vibration: &Vibration) -> Self {
         let (caps, laid, way_to_rest) = (Vec::new(), VecDeque::new(), Vec::new());
         let (smear, acts_on) = (Smear::of(vibration), vibration.acts_on());
-        Self { pieces: VecDeque::new(), smear, acts_on, caps, laid, speed: 0.0, way_to_rest, farther: 1.0 }
+        let (pieces, most_bent) = (VecDeque::new(), f64::INFINITY);
+        Self { pieces, smear, acts_on, caps, laid, speed: 0.0, way_to_rest, most_bent, farther: 1.0 }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -183,6 +186,9 @@ impl<const N: usize> Run<N> {
             };
             let blends = BLEND_SHARES.iter().filter_map(|share| blend(share * permitted).ok()?);
             corner = blends.min_by(|a, b| lost(a).total_cmp(&lost(b))).unwrap_or(corner);
+        }
+        if corner.greatest_curvature > self.most_bent {
+            return Err(Stops("the tracked seam has a corner here"));
         }
         let limits = limits(&corner, of_both);
         if takes_longer_than_a_stop(&corner, &limits, slower, self.smear) {

@@ -11,15 +11,18 @@ use seamline::seam::{Filter, LostLane, Offset, PathChain, Sensor, Settings, Tack
 use super::arm::PlanningArm;
 use super::error::{PlanError, Problem};
 use super::planner::{Planned, Planner};
-use super::run::Stops;
 use crate::cell::{self, Cell, LostSeam, SeamFilter, SensorSource};
 
 /// The taught path is known so far beyond what the sensor sees, in metres.
 const BEYOND: f64 = 0.05;
 /// It is kept so far behind the torch, in metres.
 const BEHIND: f64 = 0.05;
+/// The first readings are met so far behind the place that was seen first, in metres: what lies before is welded blind.
+const MET: f64 = 15e-3;
 /// Places of a path at which its curvature is looked at.
 const LOOKS: u32 = 32;
+/// Of the radius of a bend: how far the seam may lie on its inner side.
+const MOST_BENT: f64 = 0.5;
 /// Room that the planned speed leaves to rates below 1.
 const ROOM: f64 = 1.02;
 /// Coordinates nearer to each other than this are one, in metres.
@@ -231,26 +234,27 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         }
     }
 
-    /// Why the robot stops before a path while it tracks: a corner ends a weld.
-    pub(super) fn corner_of_seam(&self, path: &Path) -> Option<Stops> {
-        let last = &self.run.last()?.path;
-        let mut chain = PathChain::<2>::new(0.0);
-        let smooth = chain.push(last).is_ok() && chain.push(path).is_ok();
-        (self.tracks() && !smooth).then_some(Stops("the tracked seam has a corner here"))
+    /// How much a corner may bend that is passed, in 1/m: where a seam is tracked, it must leave room on its inner side.
+    pub(super) fn most_bent(&self) -> f64 {
+        if self.tracks() { MOST_BENT / self.cell.sensor.correction_max } else { f64::INFINITY }
     }
 
     /// Has the run, which is known to its end, follow the seam.
-    pub(super) fn track_run(&mut self) -> Result<(), PlanError> {
+    pub(super) fn track_run(&mut self, out: &mut Vec<Planned<N>>) -> Result<(), PlanError> {
         if !self.tracks() || self.run.is_empty() {
             return Ok(());
         }
         let mut section = self.section.take();
-        let result = section.as_mut().map_or(Ok(()), |section| self.track_in(section));
+        let result = section.as_mut().map_or(Ok(()), |section| self.track_in(section, out));
         self.section = section;
         result.map_err(|(index, problem)| self.give_up(index, problem))
     }
 
-    fn track_in(&mut self, section: &mut Section<N>) -> Result<(), (usize, Problem)> {
+    fn track_in(
+        &mut self,
+        section: &mut Section<N>,
+        out: &mut Vec<Planned<N>>,
+    ) -> Result<(), (usize, Problem)> {
         let first = |problem| (0, problem);
         let pieces: Vec<(Path, f64)> =
             self.run.placed().map(|(_, piece)| (piece.path.seam(), piece.limits.speed)).collect();
@@ -260,6 +264,16 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let speed = pieces.iter().map(|(_, speed)| *speed).fold(0.0, f64::max);
         let bend = pieces.iter().map(|(path, _)| curvature(path)).fold(0.0, f64::max);
         let Some((path, _)) = pieces.first() else { return Ok(()) };
+        let bound = self.cell.sensor.correction_max;
+        if bend * bound > MOST_BENT * (1.0 + SAME) {
+            let text = format!(
+                "the tracked path bends with a radius of {:.1} mm: expected more than {:.1} mm (sensor.correction_max_mm is {:.1})",
+                1e3 / bend,
+                bound / MOST_BENT * 1e3,
+                bound * 1e3
+            );
+            return Err(first(Problem::Track(text)));
+        }
         let settings = settings(self.cell, mounted(self.cell, path).map_err(first)?, speed, bend);
         settings.check().map_err(|error| first(Problem::Track(error.to_string())))?;
         let tool = self.tool.flange_from_tcp;
@@ -283,6 +297,15 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             weld.taught.push((*path, s));
             starts.push(Tracked { start: s, headroom });
             s += path.length();
+        }
+        let begins = weld.taught.first().map_or(section.s, |(_, start)| *start);
+        let blind = settings.sensor.look_ahead() + MET - (section.s - begins);
+        if let Some(piece) = self.run.piece(0).filter(|piece| piece.info.arc && blind > 0.0) {
+            let text = format!(
+                "the arc is on for {:.0} mm before the seam is seen: a run-in without arc would be as long",
+                blind * 1e3
+            );
+            out.push(Planned { notices: vec![text], ..Planned::part(piece.link.at()) });
         }
         section.s = s;
         if weld.most_paths() > TAUGHT_PATHS {

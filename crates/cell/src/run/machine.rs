@@ -12,6 +12,7 @@ use seamline::safety::{Fault, WorkspaceBox};
 use seamline::vibration::{Kernel, StageEntry, StageError, stage_entries};
 
 use super::clock::thread_cpu_ns;
+use super::readings::Readings;
 use crate::cell::Cell;
 use crate::plan::{Arm, PlanningArm};
 use crate::record::{MAX_JOINTS, Sample, TimeFigures, TimeHistogram};
@@ -80,6 +81,7 @@ pub struct Machine<const N: usize, K, D, A, C> {
     count: u64,
     last_tcp: Pose,
     times: Times,
+    readings: Readings,
 }
 
 impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock> Machine<N, K, D, A, C> {
@@ -127,6 +129,7 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock
             count: 0,
             last_tcp: arm.kinematics.forward(&arm.home) * flange_from_tcp,
             times: Times { stages: Default::default(), whole: TimeHistogram::new() },
+            readings: Readings::default(),
         })
     }
 
@@ -180,6 +183,9 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock
         for (histogram, ns) in self.times.stages.iter_mut().zip(output.status.stage_ns) {
             histogram.record(u64::from(ns));
         }
+        if let Some(seam) = &output.status.seam {
+            self.readings.push(&seam.counts);
+        }
         self.input.event = None;
         self.input.fault = None;
         self.input.measured = self.devices.drive.exchange(&output.command, self.period);
@@ -214,6 +220,12 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock
         sample.command[..joints].copy_from_slice(&output.command.position[..joints]);
         sample.measured[..joints].copy_from_slice(&measured[..joints]);
         sample
+    }
+
+    /// What became of the seam sensor's readings so far, in words.
+    #[must_use]
+    pub fn seam_remarks(&self) -> Vec<String> {
+        self.readings.remarks(&self.devices.seam)
     }
 
     /// Computing times so far: each stage by the clock given, the whole cycle by the thread's processor clock.

@@ -19,6 +19,7 @@ mod feeder;
 mod inject;
 mod machine;
 mod program;
+mod readings;
 mod realtime;
 mod session;
 mod supervisor;

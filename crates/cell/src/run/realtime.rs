@@ -62,7 +62,7 @@ struct Thread<const N: usize, K> {
 
 impl<const N: usize, K: PlanningArm<N>> Thread<N, K> {
     fn run(mut self, settle: u64) -> (SampleSender, LoopFigures) {
-        let remarks = prepare();
+        let mut remarks = prepare();
         let period = (self.plant.machine.period() * NANOSECONDS as f64).round() as i64;
         let mut lateness = TimeHistogram::new();
         let mut overruns = 0;
@@ -90,6 +90,7 @@ impl<const N: usize, K: PlanningArm<N>> Thread<N, K> {
             }
         }
         let stage_times = self.plant.machine.stage_times();
+        remarks.extend(self.plant.machine.seam_remarks());
         let lateness = Some(lateness.figures("lateness"));
         (self.samples, LoopFigures { stage_times, lateness, overruns, remarks })
     }

@@ -130,7 +130,8 @@ fn logical<const N: usize, K: PlanningArm<N>>(
         cycle += 1;
         left -= u64::from(cycle > 2 && beat.ends_run());
     }
-    (samples, LoopFigures { stage_times: plant.machine.stage_times(), ..LoopFigures::default() })
+    let (stage_times, remarks) = (plant.machine.stage_times(), plant.machine.seam_remarks());
+    (samples, LoopFigures { stage_times, remarks, ..LoopFigures::default() })
 }
 
 /// The figures may be off by what the cell lets a prefilter on the joints do.

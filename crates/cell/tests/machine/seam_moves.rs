@@ -269,3 +269,31 @@ fn backing_up_ends_with_what_the_lane_remembers() {
     run.to_end();
     run.assert_within_limits(&weld);
 }
+
+/// A seam taught by five lines that bend by 6° each: passed without a stop, on the seam and at the programmed speed along it.
+#[test]
+fn slight_bends_are_passed() {
+    let mut points = vec![[1050.0, -150.0, -250.0, 0.0], [1050.0, -150.0, -300.0, 0.0]];
+    for k in 0..5 {
+        let ([x, y, ..], heading) = (points[points.len() - 1], (84.0 + 6.0 * f64::from(k)).to_radians());
+        points.push([x + 60.0 * heading.cos(), y + 60.0 * heading.sin(), -300.0, 6.0 * f64::from(k)]);
+    }
+    let program = "MOVJ C00000 VJ=20.00\nMOVL C00001 V=100.0 PL=0\nCOMARCON\nMOVL C00002 V=20.0\nMOVL C00003 V=20.0\nMOVL C00004 V=20.0\n\
+                   MOVL C00005 V=20.0\nMOVL C00006 V=20.0 PL=0\nCOMARCOF\n";
+    let weld = Weld::with(Taught::Line, &job(&points, program), cell(5, ""));
+    let mut run = Run::new(&weld);
+    run.to_end();
+    run.assert_within_limits(&weld);
+    let seam = SimulatedSeam { features: weld.cell.simulation.seam.clone() };
+    let (mut off, mut fast) = (0.0_f64, 0.0_f64);
+    for k in 1..run.joints.len() {
+        let Some((s, c)) = run.seam[k].filter(|(s, _)| (RUN_IN..0.29).contains(s)) else { continue };
+        let truth = seam.offset(s);
+        off = off.max((c[0] - truth.x).abs().max((c[1] - truth.y).abs()));
+        let speed = (run.tool(k) - run.tool(k - 1)).norm() / weld.cell.cycle.period;
+        fast = fast.max((speed / 0.02 - 1.0).abs());
+    }
+    println!("{:.3} mm off at most, speed off by {:.3} %", off / MM, fast * 100.0);
+    assert_eq!(run.pieces().len(), 1);
+    assert!(off < 0.1 * MM && fast < 0.005, "{off} {fast}");
+}

@@ -18,6 +18,9 @@ const PENDING: usize = 32;
 /// Samples by which the look-ahead may grow in one cycle; one is used up.
 const SAMPLES_PER_CYCLE: usize = 3;
 
+/// Samples of the look-ahead by which a rate lags its goal where that changes steadily.
+const LEAD: f64 = 1.5;
+
 /// Where the cycle takes its commands from: a queue that a planner fills.
 pub trait CommandSource<const N: usize> {
     /// The next command, or `None` where there is none at the moment. Must not block.
@@ -335,7 +338,9 @@ impl<const N: usize> Program<N> {
     /// The rate at which a share of full speed is kept: on a tracked seam the torch's own speed along it counts.
     fn goal(&self, speed: f64, limits: Option<&RateLimits<N>>) -> f64 {
         let Some((start, block)) = self.under_way(self.now) else { return speed };
-        let full = self.full_rate(block, start);
+        // The rate is there after the look-ahead's next sample.
+        let lead = LEAD * self.ahead.spacing() * self.rate.value();
+        let full = self.full_rate(block, self.now + lead - start);
         let bearable = match limits {
             Some(limits) if full < 1.0 => self.ahead.bearable(limits),
             _ => 1.0,
@@ -343,14 +348,15 @@ impl<const N: usize> Program<N> {
         (speed * full).min(bearable)
     }
 
-    fn full_rate(&self, block: &Block<N>, start: f64) -> f64 {
+    fn full_rate(&self, block: &Block<N>, since: f64) -> f64 {
         let fading = self.fade.as_ref().map_or(1.0, |fade| fade.rate(self.now));
-        self.guide.rate(block, self.now - start).min(fading)
+        self.guide.rate(block, since).min(fading)
     }
 
     /// The share of full speed at which the program goes on.
     pub(super) fn shown_rate(&self) -> f64 {
-        let full = self.under_way(self.now).map_or(1.0, |(start, block)| self.full_rate(block, start));
+        let full =
+            self.under_way(self.now).map_or(1.0, |(start, block)| self.full_rate(block, self.now - start));
         if full < 1.0 { shown_rate(self.rate.value(), full, self.speed) } else { self.rate.value() }
     }
 
