@@ -56,6 +56,29 @@ fn the_main_job_leaves_its_three_files() {
     assert!(report.contains("FILLET") && !report.contains("src=\"http"));
 }
 
+/// The example that tracks a seam is kept on it but for half of its step of 0.5 mm, and says what became of the readings; a silent sensor stops it with
+/// its name; without a sensor the job is refused at COMARCON.
+#[test]
+fn a_seam_is_tracked_lost_and_missed() {
+    let cell = ["--cell", "examples/cells/seam.toml"];
+    let (_, summary) = run_example("seam", &cell);
+    assert_eq!(summary["verdict"], "ok");
+    let error = |of: &str| summary["seam"][of].as_f64().expect("a figure");
+    assert!(error("error_rms_mm") < 0.03 && error("error_max_mm") < 0.3, "{}", summary["seam"]);
+    let out = folder("seam-silent");
+    let job = "examples/jobs/seam.JBI";
+    let output =
+        seamline(&["run", job, cell[0], cell[1], "--out", text(&out), "--fault", "sensor-silent@20"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&output.stderr) + String::from_utf8_lossy(&output.stdout);
+    assert!(said.contains("the seam is lost: seen up to") && said.contains("the sensor is silent"), "{said}");
+    assert!(said.contains("seam sensor: "), "{said}");
+    let output = seamline(&["check", job]);
+    let said = String::from_utf8_lossy(&output.stderr) + String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(said.contains("seam.JBI:27:1: the cell has no seam sensor: expected sensor.source"), "{said}");
+}
+
 /// The example's first leg, a line along y at x = 1100 mm and z = −50 mm that goes on over the point between its two moves: the torch swings by the
 /// 2 mm of the condition, and is held against the woven path.
 #[test]

@@ -56,7 +56,7 @@ impl Run {
         panic!("it does not come to that: {:?}", self.seam.last());
     }
 
-    fn to_end(&mut self) {
+    fn finish(&mut self) {
         let end =
             self.until(|output| output.status.mode == Mode::Standstill || output.status.fault.is_some());
         assert_eq!(end.status.fault, None);
@@ -104,7 +104,7 @@ fn a_corner_ends_a_weld_and_begins_another() {
     let text = format!("{features}[sensor]\nsource = \"simulated\"\n");
     let weld = Weld::with(Taught::Line, &job(&points, program), Cell::parse(&text, "cell.toml").unwrap());
     let mut run = Run::new(&weld);
-    run.to_end();
+    run.finish();
     run.assert_within_limits(&weld);
     let seam = SimulatedSeam { features: weld.cell.simulation.seam.clone() };
     let on_seam = |range: [f64; 2]| {
@@ -139,7 +139,7 @@ fn welds_follow_each_other() {
                    COMARCON\nMOVL C00004 V=30.0 PL=0\nMOVL C00005 VR=20.0 PL=0\nMOVL C00006 V=30.0 PL=0\nCOMARCOF\nMOVJ C00000 VJ=100.00\n";
     let weld = Weld::with(Taught::Line, &job(&points, program), cell(4, ""));
     let mut run = Run::new(&weld);
-    run.to_end();
+    run.finish();
     run.assert_within_limits(&weld);
     let pieces = run.pieces();
     let near =
@@ -155,7 +155,7 @@ fn welds_follow_each_other() {
 fn backing_up_and_override_keep_the_path() {
     let weld = Weld::new(Taught::Arc, 40.0, cell(6, "[arc]\nlock_override = false\n"));
     let mut whole = Run::new(&weld);
-    whole.to_end();
+    whole.finish();
     let mut random = Random(8);
     let (mut backed, mut beside) = (0, 0.0_f64);
     for _ in 0..10 {
@@ -181,7 +181,7 @@ fn backing_up_and_override_keep_the_path() {
         backed += usize::from((run.tool(back) - run.tool(rest)).norm() > 2.0 * MM);
         run.machine.set_override(1.0);
         run.machine.request(Event::Resume);
-        run.to_end();
+        run.finish();
         run.assert_within_limits(&weld);
         // On the way back, and forward again: on the way there.
         let there: Vec<Vector3<f64>> = (0..=rest).map(|k| run.tool(k)).collect();
@@ -244,7 +244,7 @@ fn after_a_stop_off_the_path_the_torch_comes_back_to_the_seam() {
         let here = run.tool(run.joints.len() - 1);
         let near = (0..left).map(|k| (run.tool(k) - here).norm()).fold(f64::INFINITY, f64::min);
         assert!(near < 0.03 * MM && (here - run.tool(left)).norm() > 5.0 * MM, "{near}");
-        run.to_end();
+        run.finish();
         run.assert_within_limits(&weld);
     }
 }
@@ -266,7 +266,7 @@ fn backing_up_ends_with_what_the_lane_remembers() {
     let s = back.status.seam.unwrap().s;
     assert!(back.status.fault.is_none() && (0.4..0.45).contains(&s), "{s}");
     run.machine.request(Event::Resume);
-    run.to_end();
+    run.finish();
     run.assert_within_limits(&weld);
 }
 
@@ -282,7 +282,7 @@ fn slight_bends_are_passed() {
                    MOVL C00005 V=20.0\nMOVL C00006 V=20.0 PL=0\nCOMARCOF\n";
     let weld = Weld::with(Taught::Line, &job(&points, program), cell(5, ""));
     let mut run = Run::new(&weld);
-    run.to_end();
+    run.finish();
     run.assert_within_limits(&weld);
     let seam = SimulatedSeam { features: weld.cell.simulation.seam.clone() };
     let (mut off, mut fast) = (0.0_f64, 0.0_f64);
