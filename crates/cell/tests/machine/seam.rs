@@ -60,6 +60,12 @@ impl Taught {
         [(tool - point).dot(&left), (tool - point).z]
     }
 
+    /// A place beside the taught path, to the left and up.
+    pub(crate) fn beside(self, s: f64, [left, up]: [f64; 2]) -> Vector3<f64> {
+        let (point, travel) = self.at(s);
+        point + Vector3::new(-travel.y, travel.x, 0.0) * left + Vector3::new(0.0, 0.0, up)
+    }
+
     /// A position of the job: the tool turns with the travel.
     fn position(self, s: f64, lift: f64) -> String {
         let (point, travel) = self.at(s);

@@ -297,3 +297,27 @@ fn slight_bends_are_passed() {
     assert_eq!(run.pieces().len(), 1);
     assert!(off < 0.1 * MM && fast < 0.005, "{off} {fast}");
 }
+
+/// A weave of 2 mm about the tracked seam: the torch swings by just that about it, and the travel along it is the programmed one.
+#[test]
+fn a_weave_goes_about_the_tracked_seam() {
+    for taught in [Taught::Line, Taught::Arc] {
+        let weld = Weld::with(taught, &taught.job(10.0, "WVON WEV#(1)\n", "WVOF\n"), cell(1, ""));
+        let mut run = Run::new(&weld);
+        run.finish();
+        run.assert_within_limits(&weld);
+        let (mut swing, mut off, mut before) = (0.0_f64, 0.0_f64, None);
+        for k in 0..run.joints.len() {
+            // Away from the weave's ramps and the weld's ends.
+            let seam = run.seam[k].filter(|(s, _)| (0.06..0.33).contains(s));
+            let Some(seam) = seam.map(|(s, c)| taught.beside(s, c)) else { continue };
+            swing = swing.max((run.tool(k) - seam).norm());
+            if let Some(before) = before.replace(seam) {
+                let travel = (seam - before).norm() / weld.cell.cycle.period;
+                off = off.max((travel / 0.01 - 1.0).abs());
+            }
+        }
+        println!("{taught:?}: swings by {:.4} mm, travel off by {:.4} %", swing / MM, off * 100.0);
+        assert!((swing / MM - 2.0).abs() < 0.01 && off < 0.005, "{taught:?}: {swing} {off}");
+    }
+}
