@@ -385,3 +385,21 @@ fn the_seam_is_kept_behind_a_prefilter_on_the_feedrate() {
         Weld::with(taught, &taught.job(20.0, "WVON WEV#(1)\n", "WVOF\n"), cell).run();
     }
 }
+
+/// With cycles of 4 ms and of 0.25 ms as with those of 1 ms.
+#[test]
+fn the_seam_is_kept_in_cycles_of_any_length() {
+    for period_ms in ["4.0", "0.25"] {
+        let worst = worst_of(Taught::Arc, 20.0, 0..1, &format!("[cycle]\nperiod_ms = {period_ms}\n"));
+        assert!(worst.rms <= 0.015 && worst.max <= 0.08 && worst.speed <= 0.005, "{period_ms}: {worst:?}");
+    }
+}
+
+/// The mean of the last 15 readings follows as well, not as closely: what it may be off is the regression's bound for a faster weld.
+#[test]
+fn the_mean_of_the_last_readings_follows_too() {
+    for taught in [Taught::Line, Taught::Arc] {
+        let worst = worst_of(taught, 20.0, 0..2, "[sensor]\nfilter = \"mean\"\n");
+        assert!(worst.rms <= 0.05 && worst.max <= 0.4 && worst.speed <= 0.005, "{taught:?}: {worst:?}");
+    }
+}
