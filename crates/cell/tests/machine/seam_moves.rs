@@ -321,3 +321,35 @@ fn a_weave_goes_about_the_tracked_seam() {
         assert!((swing / MM - 2.0).abs() < 0.01 && off < 0.005, "{taught:?}: {swing} {off}");
     }
 }
+
+/// Programs in which COMARCON and COMARCOF stand where they need not, each run to its end within the limits.
+#[test]
+fn programs_of_every_kind_run_to_their_end() {
+    let points = [
+        [1100.0, -100.0, -250.0, 0.0],
+        [1100.0, -100.0, -300.0, 0.0],
+        [1100.0, -20.0, -300.0, 0.0],
+        [1100.0, 60.0, -300.0, 0.0],
+        [1080.0, 130.0, -300.0, 0.0],
+        [1040.0, 180.0, -300.0, 0.0],
+    ];
+    let (first, second) = ("MOVL C00002 V=40.0 PL=0\n", "MOVL C00003 V=40.0 PL=0\n");
+    for program in [
+        format!("COMARCON\nCOMARCON\n{first}COMARCON\n{second}COMARCOF\nCOMARCOF\n"),
+        format!("COMARCOF\n{first}COMARCOF\nCOMARCON\nCOMARCOF\n{second}"),
+        format!("{first}COMARCON\n"),
+        format!("COMARCON\n{first}"),
+        format!("COMARCON\n{first}MOVJ C00003 VJ=50.00\nMOVL C00004 V=40.0\nMOVL C00005 V=40.0\n"),
+        format!("COMARCON\nMOVL C00001 V=40.0\n{first}MOVL C00002 V=40.0\n{second}COMARCOF\n"),
+        "COMARCON\nMOVL C00002 V=40.0 CR=2.0\nDOUT OT#(1) ON\nMOVL C00003 V=20.0\nTIMER T=0.20\nMOVL C00004 V=60.0\nMOVL C00005 V=60.0\n\
+         COMARCOF\n".into(),
+        "COMARCON\nMOVS C00001 V=40.0\nMOVS C00002 V=40.0\nMOVS C00003 V=40.0\nMOVS C00004 V=40.0\nMOVS C00005 V=40.0\nCOMARCOF\n".into(),
+        format!("WVON WEV#(1)\nCOMARCON\n{first}WVOF\n{second}COMARCOF\nMOVJ C00000 VJ=100.00\nCOMARCON\nMOVJ C00001 VJ=100.00\nCOMARCOF\n"),
+    ] {
+        let whole = format!("MOVJ C00000 VJ=20.00\nMOVL C00001 V=100.0 PL=0\n{program}");
+        let weld = Weld::with(Taught::Line, &job(&points, &whole), cell(7, "[sensor]\nlost_seam = \"taught_path\"\n"));
+        let mut run = Run::new(&weld);
+        run.finish();
+        run.assert_within_limits(&weld);
+    }
+}
