@@ -21,6 +21,8 @@ const ROUNDS: usize = 4;
 const INSET: f64 = 0.02;
 /// From a start in motion, a motion that would have to be stretched by this stands as it is, rather than none.
 const BEARABLE: f64 = 1.0005;
+/// From a start in motion, lower speeds that take this many times as long as the plain motion are worse than to come to rest first.
+const CRAWL: f64 = 2.0;
 /// Bound on the rounds of stretching. Where a limit is passed far, the judge says so without saying how far,
 /// and each round stretches by half as much again.
 const STRETCHINGS: usize = 100;
@@ -85,7 +87,9 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
             let slowdowns = slowdowns(self, &plain, &pieces)?;
             return Ok(Timing::new(pieces, TimingKind::Optimized, slowdowns).settled_for(settled));
         }
-        if let Some((gentler, limits)) = self.gentler(Lower::All)? {
+        let moving = self.start > 0.0;
+        let crawls = |gentler: &Plain| moving && gentler.duration > CRAWL * plain.duration;
+        if let Some((gentler, limits)) = self.gentler(Lower::All)?.filter(|(gentler, _)| !crawls(gentler)) {
             return self.lowered(&plain, gentler, &limits);
         }
         if self.start > 0.0 {
@@ -222,13 +226,12 @@ impl<const N: usize, P: JointPath<N>> Task<'_, N, P> {
 fn laid(plain: &Plain, busy: &[Busy], reach: f64) -> Vec<(Window, [f64; 2])> {
     let mut spans: Vec<[f64; 2]> = Vec::new();
     for busy in busy {
-        let span = [entry(plain, busy.from, busy.reach), exit(plain, busy.to, busy.reach)];
-        match spans.last_mut() {
-            Some(before) if span[0] < before[1] + reach => {
-                *before = [before[0].min(span[0]), before[1].max(span[1])];
-            }
-            _ => spans.push(span),
+        let mut span = [entry(plain, busy.from, busy.reach), exit(plain, busy.to, busy.reach)];
+        // One that was widened may reach back over several.
+        while let Some(before) = spans.pop_if(|before| span[0] < before[1] + reach) {
+            span = [before[0].min(span[0]), before[1].max(span[1])];
         }
+        spans.push(span);
     }
     let window = |[from, to]: [f64; 2]| {
         let (first, last) = (plain.held_at(from), plain.held_at(to));

@@ -28,6 +28,8 @@ const UNEXPLAINED: f64 = 0.001;
 const UNSEEN_TURN: f64 = 0.02;
 const UNSEEN_JERK: f64 = 0.002;
 const SHARP: f64 = 5e-3;
+/// Halvings that find where the speed along the path is greatest: there it hardly changes.
+const PEAK_HALVINGS: usize = 10;
 /// Rounding: of the place, as a share of the path's length; of joint positions in radians; of velocities and
 /// accelerations as a share of the limit or the load.
 const PLACE_NOISE: f64 = 1e-14;
@@ -213,7 +215,10 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
         // Each turn either finishes an interval or splits one, and there are at most SPLITS of these.
         while let Some((right, depth)) = self.waiting.pop() {
             let middle = self.sample(piece, (left.time + right.time) / 2.0)?;
-            let part = highest(&left, &middle, &right, &self.valid);
+            let mut part = highest(&left, &middle, &right, &self.valid);
+            let peak =
+                peak_speed(piece, left.time, middle.time).max(peak_speed(piece, middle.time, right.time));
+            part.path[0] = part.path[0].max(peak / self.valid.speed);
             let foretold = self.foretold(&left, &middle, &right, &part);
             if !foretold && depth == DEPTH {
                 self.refuse_jump(&left, &right)?;
@@ -313,6 +318,20 @@ impl<'a, const N: usize, P: JointPath<N>> Check<'a, N, P> {
             None => Ok(()),
         }
     }
+}
+
+/// The greatest speed of a piece between two times, at one of them or where the acceleration falls through zero.
+fn peak_speed(piece: &TimingPiece, from: f64, to: f64) -> f64 {
+    let [start, end] = [from, to].map(|time| piece.at(time));
+    if start.acceleration <= 0.0 || end.acceleration >= 0.0 {
+        return start.velocity.max(end.velocity);
+    }
+    let (mut low, mut high) = (from, to);
+    for _ in 0..PEAK_HALVINGS {
+        let middle = (low + high) / 2.0;
+        if piece.at(middle).acceleration > 0.0 { low = middle } else { high = middle }
+    }
+    piece.at((low + high) / 2.0).velocity
 }
 
 /// The highest shares on three evenly spaced samples and on the parabola through them.

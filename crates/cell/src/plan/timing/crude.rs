@@ -10,7 +10,7 @@ use super::{JointJet, JointPath, TimingError, TimingLimits};
 
 /// Share of the acceleration and jerk limits that the pointwise bound gives to a path's bending.
 const BENDING_SHARE: f64 = 0.6;
-/// Share of the acceleration limits that the passes use.
+/// Share of the acceleration limits that the passes use, and of the jerk limits behind a held end.
 const PASS_SHARE: f64 = 0.8;
 /// Neighbouring places differ by at most this in ln ν, in any joint (rad), and in time (s).
 const SPEED_CHANGE: f64 = 0.15;
@@ -40,7 +40,7 @@ struct Survey<'a, const N: usize, P> {
     joints: &'a TimingLimits<N>,
     limits: &'a Limits,
     window: &'a Window,
-    /// Jerk with which the motion can leave rest, at either end.
+    /// Jerk with which the motion can leave either end.
     launch: [f64; 2],
 }
 
@@ -58,6 +58,10 @@ pub(super) fn coordinate<const N: usize, P: JointPath<N>>(
     places.reverse();
     limit_braking(&mut places);
     places.reverse();
+    for (end, jerk) in window.ends.into_iter().zip(survey.launch) {
+        leave(&mut places, end, PASS_SHARE * jerk);
+        places.reverse();
+    }
     let times = times(&places, &window.ends);
     let duration = times[times.len() - 1];
     let knots = knots(duration, step);
@@ -151,6 +155,23 @@ fn limit_braking<const N: usize>(places: &mut [Place<N>]) {
         let distance = (next.s - places[i].s).abs();
         let most = (next.speed * next.speed + 2.0 * acceleration * distance).sqrt();
         places[i].speed = places[i].speed.min(most);
+    }
+}
+
+/// Raises speeds behind a held end at the first place to what braking leaves of its speed, with a jerk from no acceleration on, where less
+/// would be permitted.
+fn leave<const N: usize>(places: &mut [Place<N>], end: End, jerk: f64) {
+    let (mut least, mut braking) = (end.speed(), 0.0);
+    for i in 0..places.len() - 1 {
+        if least <= places[i].speed {
+            break;
+        }
+        places[i].speed = least;
+        let distance = (places[i + 1].s - places[i].s).abs();
+        let most = places[i].acceleration.min(places[i + 1].acceleration);
+        let more = (braking + jerk * distance / least).min(most);
+        least = (least * least - (braking + more) * distance).max(0.0).sqrt();
+        braking = more;
     }
 }
 

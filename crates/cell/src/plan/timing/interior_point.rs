@@ -14,16 +14,17 @@ const ITERATIONS: usize = 50;
 /// residual.
 const DUAL_RESIDUAL: f64 = 4.0;
 const RESIDUAL: f64 = 1e-5;
-/// Start: share of the highest constant β, the least slack, and the product of slack and dual.
-const START_SHARE: f64 = 0.9;
+/// Starts, each tried where those before led nowhere: share of the highest constant β, and knots over which that blends from a held end.
+/// Then the least and the greatest β of a start, its least slack, and the product of slack and dual.
+const STARTS: [(f64, f64); 3] = [(0.9, 40.0), (0.9, 10.0), (0.05, 20.0)];
 const START_RANGE: [f64; 2] = [0.02, 1.0];
 const START_SLACK: f64 = 0.1;
 const START_PRODUCT: f64 = 0.02;
 /// The same from an earlier solution.
 const AGAIN_SLACK: f64 = 0.01;
 const AGAIN_PRODUCT: f64 = 1e-4;
-/// Knots over which a start blends from a held end.
-const BLEND: f64 = 40.0;
+/// A β below this is none: the method went astray, from rows that a start was too far beyond.
+const ASTRAY: f64 = 1e-6;
 /// Share of the way to the boundary that a step may go, and the most by which β may shrink in one.
 const TO_BOUNDARY: f64 = 0.99;
 const SHRINK: f64 = 0.2;
@@ -61,11 +62,13 @@ struct Progress {
 
 impl InteriorPoint {
     /// Solves a new problem to within `accuracy`, a share of the duration; the controls of β are in
-    /// [`InteriorPoint::controls`] afterwards. False where numbers ran out of range. Running out of
+    /// [`InteriorPoint::controls`] afterwards. False where numbers ran out of range, or β to nothing. Running out of
     /// iterations is no failure: what was reached is judged by others.
     pub(super) fn solve(&mut self, program: &Program, accuracy: f64) -> bool {
-        self.start(program);
-        self.iterate(program, accuracy)
+        STARTS.iter().any(|start| {
+            self.start(program, start);
+            self.iterate(program, accuracy) && self.points.iter().all(|point| point.x[0] > ASTRAY)
+        })
     }
 
     /// Solves the last problem again after small changes to its demands; as [`InteriorPoint::solve`].
@@ -111,15 +114,15 @@ impl InteriorPoint {
         true
     }
 
-    fn start(&mut self, program: &Program) {
+    fn start(&mut self, program: &Program, &(share, blend): &(f64, f64)) {
         let size = program.intervals() + 3;
         let [low, high] = START_RANGE;
-        let level = (START_SHARE * program.constant_bound()).clamp(low, high);
+        let level = (share * program.constant_bound()).clamp(low, high);
         self.controls.clear();
         self.controls.extend((0..size).map(|index| {
             let mut value = level;
             for (held, distance) in program.held.into_iter().zip([index, size - 1 - index]) {
-                let along = ((distance as f64 - 2.0) / BLEND).clamp(0.0, 1.0);
+                let along = ((distance as f64 - 2.0) / blend).clamp(0.0, 1.0);
                 let smooth = along * along * (3.0 - 2.0 * along);
                 value = if held { value.max(1.0 + (level - 1.0) * smooth) } else { value };
             }

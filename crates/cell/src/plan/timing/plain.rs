@@ -208,6 +208,9 @@ fn highest(segments: &[Segment]) -> Vec<f64> {
 /// Speeds from a start that is too fast for these, if there are any. To brake to a low speed takes more way than to brake
 /// to rest, since there is no acceleration left at either: so lower speeds than the highest may yet do.
 fn hasty(segments: &[Segment], start: f64, calm: &[f64]) -> Option<Vec<f64>> {
+    if segments.first().is_some_and(|first| start > first.limits.speed * (1.0 + SAME)) {
+        return None;
+    }
     // Of all speeds to brake to, the highest or rest takes the least way.
     let most = backward(segments, |next, segment| {
         let from = |speed: f64| reach(speed, segment.length(), &segment.limits);
@@ -473,6 +476,15 @@ mod tests {
             let stretches = known(to);
             assert_sound(&plain(&stretches, 0.04), &stretches, 0.04, &format!("{to}"));
         }
+    }
+
+    /// However much way there is to brake.
+    #[test]
+    fn a_start_faster_than_its_stretch_is_refused() {
+        let limits = Limits::new::<()>(&[Stretch { to: 1.0, limits: LIMITS }], 1.0).unwrap();
+        let refused = Plain::new::<()>(&limits, 1.01 * LIMITS.speed).unwrap_err();
+        assert_eq!(refused, TimingError::Start { speed: 1.01 * LIMITS.speed, limit: LIMITS.speed });
+        assert!(Plain::new::<()>(&limits, LIMITS.speed).is_ok());
     }
 
     /// From 0.1 to 0.25 m/s and back, and to rest: every ramp in the faster stretch.

@@ -30,8 +30,8 @@ pub(super) const ROUNDING: f64 = 1e-9;
 /// Shares of a limit that a repair leaves: what it aims at, and the least.
 const AIM: f64 = 0.9995;
 const LEAST_SHARE: f64 = 0.2;
-/// Slack of the speed limit at a held end; sites next to it whose speed limit is not lowered, where its speed is this
-/// share of the limit or more.
+/// Slack of the speed limit at a held end; sites next to it whose speed limit is lowered by no more than it is passed by, where its
+/// speed is this share of the limit or more.
 const AT_LIMIT: f64 = 0.9995;
 const HELD_SLACK: f64 = 0.01;
 const HELD_SITES: usize = 20;
@@ -168,7 +168,8 @@ impl Workshop {
                 0 => self.solver.solve(&self.program, ACCURACY),
                 _ => self.solver.solve_again(&self.program, ACCURACY),
             };
-            let Some(pieces) = self.pieces(solved, &coordinate, window) else { break };
+            let pieces = self.pieces(solved, &coordinate, window);
+            let Some(pieces) = pieces.filter(|pieces| pieces.iter().all(goes_on)) else { break };
             let (loads, stretch) = judged(path, joints, limits, &pieces)?;
             let mut passage = Passage { pieces, stretch, anchors: Vec::new() };
             if stretch <= STRETCH {
@@ -294,7 +295,9 @@ impl Workshop {
             for axis in 0..axes {
                 for order in 0..3 {
                     let share = if axis < N { load.joints[order][axis] } else { load.path[order] };
-                    if share <= AIM || (near_held && axis == N && order == 0) {
+                    let (passed, aim) =
+                        if near_held && axis == N && order == 0 { (1.0 + LEFT, 1.0) } else { (AIM, AIM) };
+                    if share <= passed {
                         continue;
                     }
                     for site in [half, half + 1] {
@@ -302,12 +305,17 @@ impl Workshop {
                             continue;
                         }
                         let used = &mut self.shares[site * axes + axis][order];
-                        *used = (*used * AIM / share).max(LEAST_SHARE);
+                        *used = (*used * aim / share).max(LEAST_SHARE);
                     }
                 }
             }
         }
     }
+}
+
+/// Whether a piece that goes on at both ends does not turn back between them, where it nearly stops.
+fn goes_on(piece: &TimingPiece) -> bool {
+    piece.at(piece.duration / 2.0).velocity > 0.0
 }
 
 /// The loads of all half pieces, and the factor on time that they ask for.
