@@ -1,11 +1,11 @@
 //! Prefilters on the feedrate: the tool stays on its path, and the joints keep their limits.
 
-use seamline::control::{Event, Mode};
+use seamline::control::Mode;
 use seamline_cell::cell::Cell;
 
 use crate::bench::on_feedrate;
 use crate::chain::random_runs;
-use crate::prefilter::{LINE, NAMES, Run, interrupted, ringing};
+use crate::prefilter::{LINE, NAMES, Run, interrupted, left_ringing};
 
 /// Random runs as in `chain`, with prefilters for slow modes and fast ones: limits, corner errors, and no move faster than programmed.
 #[test]
@@ -50,25 +50,10 @@ fn the_tool_stays_on_its_line() {
 /// little beside what rings without prefilter.
 #[test]
 fn a_flexible_arm_hardly_rings() {
-    let of = |cell: &Cell, pause: Option<usize>| {
-        let mut run = Run::start(cell, 200.0);
-        run.until(|output| output.status.marker == 1);
-        if let Some(instant) = pause {
-            for _ in 0..instant {
-                run.cycle();
-            }
-            run.bench.input.event = Some(Event::Hold);
-            run.until(|output| output.status.at_rest);
-        } else {
-            run.until(|output| output.status.marker == 2);
-        }
-        let begin = run.outputs.iter().position(|output| output.status.marker == 1).unwrap();
-        ringing(&run.rows()[begin..], &[6.34], run.bench.period)
-    };
     for pause in [None, Some(400), Some(900)] {
-        let bare = of(&Cell::default_cell().unwrap(), pause);
+        let (_, bare) = left_ringing(&Cell::default_cell().unwrap(), &[6.34], pause);
         for name in ["zv", "zvd", "fir-zv", "fir-zvd", "mzv"] {
-            let left = of(&on_feedrate(name, &[6.34]), pause) / bare;
+            let left = left_ringing(&on_feedrate(name, &[6.34]), &[6.34], pause).1 / bare;
             println!("{name} pause {pause:?}: {left:.4}");
             assert!(left < 0.05, "{name}: {left}");
         }

@@ -276,7 +276,7 @@ impl Flexible {
 }
 
 /// Greatest amplitude over the joints once the command rests, from modes of these frequencies on each joint.
-pub(crate) fn ringing(rows: &[[f64; 6]], frequencies: &[f64], period: f64) -> f64 {
+fn ringing(rows: &[[f64; 6]], frequencies: &[f64], period: f64) -> f64 {
     let amplitude = |joint: usize, frequency: f64| {
         let start = rows[0][joint];
         let mut arm = Flexible {
@@ -293,32 +293,34 @@ pub(crate) fn ringing(rows: &[[f64; 6]], frequencies: &[f64], period: f64) -> f6
     all.map(|(joint, frequency)| amplitude(joint, frequency)).fold(0.0, f64::max)
 }
 
+/// What rings after the joint move, and after the line or a pause on it at an instant.
+pub(crate) fn left_ringing(cell: &Cell, frequencies: &[f64], pause: Option<usize>) -> (f64, f64) {
+    let mut run = Run::start(cell, 200.0);
+    run.until(|output| output.status.marker == 1);
+    let first = ringing(&run.rows(), frequencies, run.bench.period);
+    if let Some(instant) = pause {
+        for _ in 0..instant {
+            run.cycle();
+        }
+        run.bench.input.event = Some(Event::Hold);
+        run.until(|output| output.status.at_rest);
+    } else {
+        run.until(|output| output.status.marker == 2);
+    }
+    // What the first move left behind does not count.
+    let begin = run.outputs.iter().position(|output| output.status.marker == 1).unwrap();
+    (first, ringing(&run.rows()[begin..], frequencies, run.bench.period))
+}
+
 /// A line from stop to stop, a joint move and pauses on the line at four instants, each judged at the instant at which the controller says that the arm is
 /// at rest: the flexible joints ring at most a thousandth of what they do without prefilter, with two modes as well.
 #[test]
 fn a_flexible_arm_does_not_ring() {
-    let of = |cell: &Cell, frequencies: &[f64], pause: Option<usize>| {
-        let mut run = Run::start(cell, 200.0);
-        run.until(|output| output.status.marker == 1);
-        let first = ringing(&run.rows(), frequencies, run.bench.period);
-        if let Some(instant) = pause {
-            for _ in 0..instant {
-                run.cycle();
-            }
-            run.bench.input.event = Some(Event::Hold);
-            run.until(|output| output.status.at_rest);
-        } else {
-            run.until(|output| output.status.marker == 2);
-        }
-        // What the first move left behind does not count.
-        let begin = run.outputs.iter().position(|output| output.status.marker == 1).unwrap();
-        (first, ringing(&run.rows()[begin..], frequencies, run.bench.period))
-    };
     for frequencies in [&[6.34][..], &[9.0, 23.0]] {
         for pause in [None, Some(250), Some(400), Some(650), Some(900)] {
-            let bare = of(&Cell::default_cell().unwrap(), frequencies, pause);
+            let bare = left_ringing(&Cell::default_cell().unwrap(), frequencies, pause);
             for name in ["zv", "zvd", "fir-zv", "fir-zvd", "mzv"] {
-                let shaped = of(&flexible(name, frequencies), frequencies, pause);
+                let shaped = left_ringing(&flexible(name, frequencies), frequencies, pause);
                 println!(
                     "{name} {frequencies:?} pause {pause:?}: {:.5} {:.5}",
                     shaped.0 / bare.0,
