@@ -3,7 +3,7 @@
 use rtrb::Consumer;
 use seamline::arc::ArcSource;
 use seamline::control::{
-    ArcRules, Command, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event, JointPrefilter,
+    ArcRules, Command, CommandPrefilter, CommandSource, Cycle, CycleConfig, CycleInput, CycleOutput, Event,
     PrefilterEntry, STAGES, ServoModel, StageClock,
 };
 use seamline::drive::Drive;
@@ -60,11 +60,11 @@ type Memory<const N: usize> = Box<[PrefilterEntry<N>]>;
 ///
 /// # Errors
 /// [`StageError`] where a kernel does not suit the period.
-pub fn joint_prefilter<const N: usize>(cell: &Cell) -> Result<JointPrefilter<N, Memory<N>>, StageError> {
+pub fn command_prefilter<const N: usize>(cell: &Cell) -> Result<CommandPrefilter<N, Memory<N>>, StageError> {
     let period = cell.cycle.period;
     let stage =
         |kernel: &Kernel| (*kernel, vec![StageEntry::ZERO; stage_entries(kernel, period)].into_boxed_slice());
-    let prefilter = JointPrefilter::try_new(cell.vibration.kernels().iter().map(stage), period)?;
+    let prefilter = CommandPrefilter::try_new(cell.vibration.kernels().iter().map(stage), period)?;
     Ok(prefilter.acting_on(cell.vibration.acts_on()))
 }
 
@@ -111,7 +111,7 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock
             overruns_in_row: OVERRUNS_IN_ROW,
             arc: arc_rules(cell),
         };
-        let prefilter = joint_prefilter(cell)?;
+        let prefilter = command_prefilter(cell)?;
         Ok(Self {
             cycle: Box::new(Cycle::with_prefilter(config, arm.kinematics.clone(), prefilter, arm.home)),
             devices,

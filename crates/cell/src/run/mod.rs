@@ -31,6 +31,6 @@ pub use clock::{MonotonicClock, thread_cpu_ns};
 pub use error::{Place, RunError};
 pub use faults::describe;
 pub use inject::FaultScript;
-pub use machine::{Devices, Machine, arc_rules, joint_prefilter};
+pub use machine::{Devices, Machine, arc_rules, command_prefilter};
 pub use program::Program;
 pub use session::{Progress, RunOptions, RunReport, run};

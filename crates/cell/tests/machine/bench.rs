@@ -19,7 +19,7 @@ use seamline_cell::job::{
     SpeedOrigin, Step, Target, Zone, pulses_from_joints,
 };
 use seamline_cell::plan::{Arm, PlanError, Planned, Planner, PlanningArm};
-use seamline_cell::run::{arc_rules, joint_prefilter};
+use seamline_cell::run::{arc_rules, command_prefilter};
 use seamline_cell::sim::{SimulatedArc, SimulatedDrive};
 
 pub(crate) type Ar2010 = Arm<6, SixAxisArm>;
@@ -173,7 +173,7 @@ impl<const N: usize, K: PlanningArm<N>> Bench<N, K> {
         let config = CycleConfig { arc: arc_rules(cell), ..config(cell, arm) };
         let bench = Self::new(cell, arm, commands);
         let cycle =
-            Cycle::with_prefilter(config, arm.kinematics.clone(), joint_prefilter(cell).unwrap(), arm.home);
+            Cycle::with_prefilter(config, arm.kinematics.clone(), command_prefilter(cell).unwrap(), arm.home);
         let mut bench = Self { cycle: Box::new(cycle), arc: Some(SimulatedArc::from_cell(cell)), ..bench };
         bench.cycle_with(Event::Enable);
         bench
@@ -185,7 +185,7 @@ impl<const N: usize, K: PlanningArm<N>> Bench<N, K> {
         drive: SimulatedDrive<N>,
         commands: Vec<Command<N>>,
     ) -> Self {
-        let prefilter = joint_prefilter(cell).unwrap();
+        let prefilter = command_prefilter(cell).unwrap();
         let mut bench = Self {
             cycle: Box::new(Cycle::with_prefilter(
                 config(cell, arm),

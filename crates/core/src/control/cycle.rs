@@ -4,7 +4,7 @@ use super::arc::{Arc, ArcRules};
 use super::feedback::{Observer, ServoModel};
 use super::mode::{Event, Mode};
 use super::off_path::OffPath;
-use super::prefilter::{ActsOn, JointPrefilter, PrefilterEntry, Progress};
+use super::prefilter::{ActsOn, CommandPrefilter, PrefilterEntry, Progress};
 use super::program::{Arm, CommandSource, Follows, Program, joints_of};
 use super::rails::{OnRails, RAIL_MOVES};
 use super::rate::RateLimits;
@@ -71,7 +71,7 @@ pub struct Cycle<const N: usize, K, M = [PrefilterEntry<N>; 0]> {
     /// The arm stands or moves on the job's path.
     pub(super) on_path: bool,
     pub(super) program: Program<N>,
-    prefilter: JointPrefilter<N, M>,
+    prefilter: CommandPrefilter<N, M>,
     /// The place of the program that the arm has come to, the way of the tool up to there, and the rate at which it goes on.
     mark: Mark,
     tool_way: f64,
@@ -98,7 +98,7 @@ impl<const N: usize, K: Kinematics<N>> Cycle<N, K> {
     /// A disabled controller whose arm stands at `position`, without prefilters.
     #[must_use]
     pub fn new(config: CycleConfig<N>, kinematics: K, position: [f64; N]) -> Self {
-        Self::with_prefilter(config, kinematics, JointPrefilter::none(), position)
+        Self::with_prefilter(config, kinematics, CommandPrefilter::none(), position)
     }
 }
 
@@ -112,7 +112,7 @@ where
     pub fn with_prefilter(
         config: CycleConfig<N>,
         kinematics: K,
-        mut prefilter: JointPrefilter<N, M>,
+        mut prefilter: CommandPrefilter<N, M>,
         position: [f64; N],
     ) -> Self {
         let CycleConfig { period, limits, workspace, flange_from_tcp, servo, .. } = config;

@@ -9,7 +9,7 @@
 //! | 1 feedback | holds the measured joints against the drives' model, filters them | following error, drive |
 //! | 2 target | lets programme time run on, within what the joints bear | queue ran empty |
 //! | 3 kinematics | joints and their derivatives at that instant | no inverse |
-//! | | [prefilters](JointPrefilter), where the cell has them: the joint commands, or a feedrate, that do not make the arm ring | |
+//! | | [prefilters](CommandPrefilter), where the cell has them: the joint commands, or a feedrate, that do not make the arm ring | |
 //! | 4 safety | judges the command by its differences; stops the arm instead where it would leave the envelope | limits |
 
 mod arc;
@@ -35,7 +35,7 @@ pub use block::{BLOCK_PIECES, Block, Command, Motion, PathMotion, TrajectoryMoti
 pub use cycle::{Cycle, CycleConfig, CycleInput};
 pub use feedback::ServoModel;
 pub use mode::{Event, Mode};
-pub use prefilter::{ActsOn, JointPrefilter, JointSignal, MODES_MAX, PrefilterEntry};
+pub use prefilter::{ActsOn, CommandPrefilter, CommandSignal, MODES_MAX, PrefilterEntry};
 pub use program::CommandSource;
 pub use rails::RAIL_MOVES;
 pub use seam::{SeamStatus, TAUGHT_PATHS, Tracked, Tracking};

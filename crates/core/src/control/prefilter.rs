@@ -1,4 +1,4 @@
-//! The prefilters between kinematics and safety: joint commands that do not make the arm ring.
+//! The prefilters between kinematics and safety: joint commands, or a feedrate, that do not make the arm ring.
 
 use super::trail::{Mark, Trail};
 use crate::drive::JointCommand;
@@ -7,14 +7,14 @@ use crate::vibration::{Kernel, PrefilterStage, Signal, StageEntry, StageError};
 /// Most flexible modes, each with a stage of its own.
 pub const MODES_MAX: usize = 3;
 
-/// One cycle in the memory of a joint prefilter's stage.
-pub type PrefilterEntry<const N: usize> = StageEntry<JointSignal<N>>;
+/// One cycle in the memory of a prefilter's stage.
+pub type PrefilterEntry<const N: usize> = StageEntry<CommandSignal<N>>;
 
 /// What goes through the prefilters together.
 ///
 /// Velocity and acceleration take the same weights as the position, and are therefore the derivatives of what comes out.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct JointSignal<const N: usize> {
+pub struct CommandSignal<const N: usize> {
     position: [f64; N],
     velocity: [f64; N],
     acceleration: [f64; N],
@@ -28,7 +28,7 @@ pub struct JointSignal<const N: usize> {
     time: [f64; 3],
 }
 
-impl<const N: usize> Signal for JointSignal<N> {
+impl<const N: usize> Signal for CommandSignal<N> {
     const ZERO: Self = Self {
         position: [0.0; N],
         velocity: [0.0; N],
@@ -51,19 +51,19 @@ impl<const N: usize> Signal for JointSignal<N> {
     }
 }
 
-/// Prefilters on joint commands, one stage a flexible mode.
+/// Prefilters on joint commands or on the feedrate ([`ActsOn`]), one stage a flexible mode.
 ///
 /// | | |
 /// |---|---|
 /// | gain | 1 at zero frequency: the arm comes to rest where the program does |
 /// | delay | the sum of the kernels' delays at a constant rate; of their lengths until the last of it has come out |
-/// | limits | joint position, velocity, acceleration and jerk that hold before hold after: means with positive weights |
-/// | path | left where it is curved in the joints, by ½ σ² · \|q″\| · ṡ² at most; see `docs/vibration.md` |
+/// | limits | on joint commands: position, velocity, acceleration and jerk that hold before hold after: means with positive weights |
+/// | path | on joint commands: left where it is curved in the joints, by ½ σ² · \|q″\| · ṡ² at most; see `docs/vibration.md` |
 ///
 /// `M` is the memory of one stage; [`stage_entries`](crate::vibration::stage_entries) says how much it needs.
 #[derive(Debug, Clone)]
-pub struct JointPrefilter<const N: usize, M> {
-    stages: [Option<PrefilterStage<JointSignal<N>, M>>; MODES_MAX],
+pub struct CommandPrefilter<const N: usize, M> {
+    stages: [Option<PrefilterStage<CommandSignal<N>, M>>; MODES_MAX],
     acts_on: ActsOn,
     trail: Trail,
 }
@@ -105,7 +105,7 @@ pub(super) struct Progress {
     pub(super) time: [f64; 3],
 }
 
-impl<const N: usize, M> JointPrefilter<N, M> {
+impl<const N: usize, M> CommandPrefilter<N, M> {
     /// None: the commands stay as they are.
     #[must_use]
     pub fn none() -> Self {
@@ -114,7 +114,7 @@ impl<const N: usize, M> JointPrefilter<N, M> {
     }
 }
 
-impl<const N: usize, M: AsRef<[PrefilterEntry<N>]> + AsMut<[PrefilterEntry<N>]>> JointPrefilter<N, M> {
+impl<const N: usize, M: AsRef<[PrefilterEntry<N>]> + AsMut<[PrefilterEntry<N>]>> CommandPrefilter<N, M> {
     /// Stages with these kernels and memories, one after the other, for commands every `period` seconds. Those beyond [`MODES_MAX`] are
     /// left out.
     ///
@@ -123,7 +123,7 @@ impl<const N: usize, M: AsRef<[PrefilterEntry<N>]> + AsMut<[PrefilterEntry<N>]>>
     pub fn try_new(stages: impl IntoIterator<Item = (Kernel, M)>, period: f64) -> Result<Self, StageError> {
         let mut prefilter = Self::none();
         for (slot, (kernel, memory)) in prefilter.stages.iter_mut().zip(stages) {
-            *slot = Some(PrefilterStage::try_new(memory, &kernel, period, &JointSignal::ZERO)?);
+            *slot = Some(PrefilterStage::try_new(memory, &kernel, period, &CommandSignal::ZERO)?);
         }
         Ok(prefilter)
     }
@@ -153,7 +153,7 @@ impl<const N: usize, M: AsRef<[PrefilterEntry<N>]> + AsMut<[PrefilterEntry<N>]>>
     pub(super) fn reset(&mut self, position: [f64; N], progress: &Progress) {
         let Progress { mark, course, tool_way, rate, time, .. } = *progress;
         let [course, time] = [course, time].map(|of| [of[0], 0.0, 0.0]);
-        let signal = JointSignal { position, course, tool_way, rate, time, ..JointSignal::ZERO };
+        let signal = CommandSignal { position, course, tool_way, rate, time, ..CommandSignal::ZERO };
         self.stages.iter_mut().flatten().for_each(|stage| stage.reset(&signal));
         self.trail.reset(mark);
     }
@@ -165,11 +165,11 @@ impl<const N: usize, M: AsRef<[PrefilterEntry<N>]> + AsMut<[PrefilterEntry<N>]>>
             return Shaped { command: *command, course, time, mark, tool_way, rate };
         }
         let JointCommand { position, velocity, acceleration } = *command;
-        let mut signal = JointSignal { position, velocity, acceleration, course, tool_way, rate, time };
+        let mut signal = CommandSignal { position, velocity, acceleration, course, tool_way, rate, time };
         for stage in self.stages.iter_mut().flatten() {
             signal = stage.update(&signal);
         }
-        let JointSignal { position, velocity, acceleration, course, tool_way, rate, time } = signal;
+        let CommandSignal { position, velocity, acceleration, course, tool_way, rate, time } = signal;
         let command = JointCommand { position, velocity, acceleration };
         Shaped { command, course, time, mark: self.trail.pass(mark, since, course[0]), tool_way, rate }
     }
