@@ -73,6 +73,17 @@ fn a_seam_is_tracked_lost_and_missed() {
     let said = String::from_utf8_lossy(&output.stderr) + String::from_utf8_lossy(&output.stdout);
     assert!(said.contains("the seam is lost: seen up to") && said.contains("the sensor is silent"), "{said}");
     assert!(said.contains("seam sensor: "), "{said}");
+    // A job that reads inputs is planned step by step, but along the seam as far as it reads none.
+    let out = folder("seam-waits");
+    let waits = out.join("waits.JBI");
+    let text_of_job = fs::read_to_string(root().join(job)).expect("the example");
+    fs::write(&waits, text_of_job.replace("COMARCON\r\n", "WAIT IN#(1)=OFF T=0.20\r\nCOMARCON\r\n"))
+        .expect("a job");
+    let output = seamline(&["run", text(&waits), cell[0], cell[1], "--out", text(&out.join("out"))]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let summary = fs::read_to_string(out.join("out/summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_str(&summary).expect("valid JSON");
+    assert!(summary["seam"]["error_max_mm"].as_f64().expect("a figure") < 0.3, "{}", summary["seam"]);
     let output = seamline(&["check", job]);
     let said = String::from_utf8_lossy(&output.stderr) + String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(1));

@@ -199,6 +199,14 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
         }
     }
 
+    /// Whether some of the steps taken have not been handed out: [`Planner::finish`] does that.
+    #[must_use]
+    pub fn holds_back(&self) -> bool {
+        self.is_under_way()
+            || !self.waiting.is_empty()
+            || self.section.as_ref().is_some_and(Section::holds_back)
+    }
+
     /// A move is held back.
     fn is_under_way(&self) -> bool {
         self.held.is_some() || !self.run.is_empty()

@@ -61,8 +61,17 @@ impl<const N: usize> Section<N> {
         Self { closed: false, s: 0.0, welds: Vec::new(), held: Vec::new(), on: None }
     }
 
+    pub(super) fn holds_back(&self) -> bool {
+        !self.held.is_empty()
+    }
+
     /// Hands out all that is held, with what the cycle must know for it.
     fn hand_out(&mut self, out: &mut Vec<Planned<N>>) {
+        if !self.closed {
+            // What is to come may bend as much as can be tracked.
+            let open = self.welds.last_mut().filter(|weld| !weld.begun);
+            open.into_iter().for_each(|weld| weld.settings.curvature = MOST_BENT / weld.settings.bound);
+        }
         let mut held = std::mem::take(&mut self.held);
         for planned in &mut held {
             let commands = std::mem::take(&mut planned.commands);
@@ -217,8 +226,9 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         }
     }
 
-    /// Whether a run is held until it is known to its end, since a seam is tracked.
-    pub(super) fn tracks(&self) -> bool {
+    /// Whether a seam is tracked after all steps taken: what leads along it is held until it is known to its end.
+    #[must_use]
+    pub fn tracks(&self) -> bool {
         self.section.as_ref().is_some_and(|section| !section.closed)
     }
 

@@ -70,6 +70,9 @@ fn walk_through<const N: usize, K: PlanningArm<N>>(
         reads_inputs: false,
     };
     while walk.is_straight() || (report.steps < STEPS_MAX && report.duration < DURATION_MAX) {
+        if in_step && !walk.goes_on_ahead() {
+            report.finish(&mut walk);
+        }
         let before = walk.inputs_read();
         match walk.next(report.duration) {
             Ok(None) => {
@@ -80,7 +83,7 @@ fn walk_through<const N: usize, K: PlanningArm<N>>(
                 report.steps += 1;
                 report.moves += usize::from(matches!(step.action, Action::Move(_)));
                 report.reads_inputs |= walk.inputs_read() > before;
-                report.take(&mut walk, &step, in_step);
+                report.take(&mut walk, &step);
             }
             Err(error) if walk.is_straight() => report.add_error(error),
             Err(error) => {
@@ -98,20 +101,12 @@ fn walk_through<const N: usize, K: PlanningArm<N>>(
 }
 
 impl CheckReport {
-    fn take<const N: usize, K: PlanningArm<N>>(
-        &mut self,
-        walk: &mut Walk<'_, N, K>,
-        step: &Step,
-        in_step: bool,
-    ) {
+    fn take<const N: usize, K: PlanningArm<N>>(&mut self, walk: &mut Walk<'_, N, K>, step: &Step) {
         let mut parts = Vec::new();
         if let Err(error) = walk.plan(step, &mut parts) {
             self.add_error(error);
         }
         self.add(walk, parts);
-        if in_step {
-            self.finish(walk);
-        }
     }
 
     /// What is left of the motion. Each error leaves a step out, so that this ends.

@@ -66,8 +66,15 @@ impl<'a, const N: usize, K: PlanningArm<N>> Feeder<'a, N, K> {
                     return;
                 }
                 self.waiting = None;
-            } else if self.in_step && !arrived {
-                return;
+            } else if self.in_step && !self.walk.goes_on_ahead() {
+                // The robot can arrive only by what is held back.
+                if self.walk.holds_back() {
+                    self.finish(&mut segment);
+                    continue;
+                }
+                if !arrived {
+                    return;
+                }
             }
             self.take_step(time, &mut segment);
         }
@@ -103,16 +110,27 @@ impl<'a, const N: usize, K: PlanningArm<N>> Feeder<'a, N, K> {
             Ok(None) => (true, Ok(())),
             Err(error) => (true, Err(error)),
         };
-        let result = match result {
-            // In step, and at the program's end, the robot arrives.
-            Ok(()) if ends || self.in_step => self.walk.finish(&mut parts),
-            result => result,
-        };
-        for part in parts {
-            self.send(part, segment);
-        }
+        // At the program's end the robot arrives.
+        let result = if ends { result.and_then(|()| self.walk.finish(&mut parts)) } else { result };
+        self.send_all(parts, segment);
         if (ends || result.is_err()) && !self.ended {
             self.end(result.err());
+        }
+    }
+
+    /// Sends what the planner holds back.
+    fn finish(&mut self, segment: &mut impl FnMut(SegmentInfo)) {
+        let mut parts = Vec::new();
+        let result = self.walk.finish(&mut parts);
+        self.send_all(parts, segment);
+        if let (Err(error), false) = (result, self.ended) {
+            self.end(Some(error));
+        }
+    }
+
+    fn send_all(&mut self, parts: Vec<Planned<N>>, segment: &mut impl FnMut(SegmentInfo)) {
+        for part in parts {
+            self.send(part, segment);
         }
     }
 

@@ -210,9 +210,9 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock
             arc: output.arc.on,
             ..Sample::at_rest()
         };
-        if let Some(seam) = status.seam.filter(|seam| seam.on_seam) {
+        if let Some(seam) = status.seam {
             (sample.seam_lateral, sample.seam_height) = (seam.offset.x, seam.offset.y);
-            let truth = self.devices.seam.true_seam(seam.s);
+            let truth = self.devices.seam.true_seam(seam.s).filter(|_| seam.on_seam);
             sample.seam_error = truth.map_or(f64::NAN, |truth| (seam.offset - truth).norm());
         }
         let joints = N.min(MAX_JOINTS);

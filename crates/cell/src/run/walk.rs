@@ -5,7 +5,7 @@ use super::program::Program;
 use super::world::CellWorld;
 use crate::cell::{Cell, SpeedUnit};
 use crate::gcode;
-use crate::job::{Condition, Interpreter, LinearSpeedUnit, Location, SignalKind, Step, World};
+use crate::job::{Action, Condition, Interpreter, LinearSpeedUnit, Location, SignalKind, Step, World};
 use crate::plan::{Arm, PlanError, Planned, Planner, PlanningArm};
 
 /// How long a WAIT without limit is tried, in seconds.
@@ -61,9 +61,27 @@ impl<'a, const N: usize, K: PlanningArm<N>> Walk<'a, N, K> {
         }
     }
 
+    /// Whether the next step may be taken before the robot has done those before although the job reads inputs: along a tracked seam the way ahead
+    /// must be known. A step that reads an input, or waits for one, may not.
+    pub(super) fn goes_on_ahead(&self) -> bool {
+        let Reader::Inform(interpreter) = &self.reader else { return false };
+        if !self.planner.tracks() {
+            return false;
+        }
+        let mut world = self.world.clone();
+        let next = interpreter.as_ref().clone().next(&mut world);
+        let waits = !matches!(next, Ok(Some(step)) if !matches!(step.action, Action::Wait { .. }));
+        !waits && world.inputs_read == self.world.inputs_read
+    }
+
     /// The program has no flow: it ends, and can be walked on behind a line that is wrong.
     pub(super) fn is_straight(&self) -> bool {
         matches!(self.reader, Reader::GCode(_))
+    }
+
+    /// Whether some of the steps taken have not been handed out.
+    pub(super) fn holds_back(&self) -> bool {
+        self.planner.holds_back()
     }
 
     /// Takes a step; hands out what is settled of the motion by now.

@@ -13,7 +13,7 @@ use super::curves::Point;
 const MAX_BETWEEN: usize = 64;
 
 /// The run of MOVC points under way.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Arcs {
     /// The last points of the run, at most two.
     run: Vec<Target>,

@@ -26,7 +26,7 @@ pub(super) struct Raw {
 }
 
 /// The steps held back. At most one of the two holds any.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Curves {
     arcs: Arcs,
     splines: Splines,

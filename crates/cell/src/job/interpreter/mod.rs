@@ -39,7 +39,7 @@ pub const MAX_CALLS: usize = 32;
 ///
 /// Pull style: it has no clock and no thread, and does nothing between two calls of [`next`](Self::next). A program
 /// is read ahead of the robot only where an arc needs its third point, or a spline all of its points.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Interpreter {
     jobs: JobSet,
     v_unit: LinearSpeedUnit,
@@ -57,7 +57,7 @@ pub struct Interpreter {
 }
 
 /// One job under way.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Call {
     job: usize,
     /// The statement that runs next.

@@ -25,7 +25,7 @@ struct Given {
 }
 
 /// Speeds that supply moves without one.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Speeds {
     /// From SPEED, per kind.
     set: Vec<(SpeedKind, Given)>,

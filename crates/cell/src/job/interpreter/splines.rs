@@ -14,7 +14,7 @@ const MAX_HELD: usize = 1000;
 const MIN_POINTS: usize = 3;
 
 /// The run of MOVS points under way.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Splines {
     held: VecDeque<Step>,
     ready: VecDeque<Step>,
