@@ -111,6 +111,27 @@ fn the_weaving_example_swings_by_its_amplitude() {
     assert!(swings.iter().all(|swing| (swing - 2.0).abs() < 0.02), "{swings:?}");
 }
 
+/// The fill pass lies 3 mm above the root that was tracked, all along the weld.
+#[test]
+fn the_second_pass_lies_above_the_first() {
+    let (out, summary) = run_example("passes", &["--cell", "examples/cells/seam.toml"]);
+    assert_eq!(summary["verdict"], "ok");
+    let recording = fs::read_to_string(out.join("recording.csv")).expect("a recording");
+    let header: Vec<&str> = recording.lines().next().expect("a header").split(',').collect();
+    let column = |name: &str| header.iter().position(|word| *word == name).expect("a column");
+    let [line, time, y, height] = ["line", "time_s", "tcp_y_mm", "seam_height_mm"].map(column);
+    let mut passes: [Vec<[f64; 2]>; 2] = Default::default();
+    for row in recording.lines().skip(1) {
+        let value = |at: usize| row.split(',').nth(at).and_then(|word| word.parse().ok()).unwrap_or(f64::NAN);
+        if value(line) == 55.0 && value(height).is_finite() {
+            passes[usize::from(value(time) > 50.0)].push([value(y), value(height)]);
+        }
+    }
+    let mean = |pass: &[[f64; 2]]| pass.iter().map(|[_, height]| height).sum::<f64>() / pass.len() as f64;
+    let above = mean(&passes[1]) - mean(&passes[0]);
+    assert!(passes.iter().all(|pass| pass.len() > 15_000) && (above - 3.0).abs() < 0.01, "{above}");
+}
+
 #[test]
 fn override_changes_time_and_not_the_path() {
     let (full, half) = (run_example("near_wrist", &[]).1, run_example("near_wrist", &["--override", "50"]).1);

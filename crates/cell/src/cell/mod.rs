@@ -16,6 +16,7 @@ mod io;
 mod job_rules;
 mod motion;
 mod nearest;
+mod pass;
 mod robot;
 mod seam;
 mod section;
@@ -35,6 +36,7 @@ pub use io::{Io, ScriptedInput, UnmetWait, UnscriptedInput};
 pub use job_rules::{JobRules, SpeedUnit, WeldSpeedRule};
 pub use motion::{CartesianLimits, Cycle, DriveBackend, Safety};
 pub use nearest::nearest;
+pub use pass::Pass;
 pub use robot::{
     BuiltInRobot, DhConvention, DhRow, DhTable, JOINTS_MAX, Joint, JointKind, OpwParameters, Robot,
     RobotModel, UrdfSource,
@@ -73,6 +75,8 @@ pub struct Cell {
     pub arc_ends: Vec<ArcEnd>,
     /// Weave conditions by ascending number.
     pub weaves: Vec<Weave>,
+    /// Passes of welds by ascending number.
+    pub passes: Vec<Pass>,
     /// What is allowed while the arc is on.
     pub arc: ArcPolicy,
     /// The seam sensor.
@@ -148,6 +152,7 @@ impl Cell {
             arc_starts: numbered(&mut root, "arc_start", 1..=9999, ArcStart::read)?,
             arc_ends: numbered(&mut root, "arc_end", 1..=9999, ArcEnd::read)?,
             weaves: numbered(&mut root, "weave", 1..=9999, Weave::read)?,
+            passes: numbered(&mut root, "pass", 1..=9999, |number, table| Pass::read(number, table, folder))?,
             arc: ArcPolicy::read(root.section("arc")?)?,
             sensor: Sensor::read(root.section("sensor")?, folder)?,
             vibration: Vibration::read(
@@ -186,6 +191,13 @@ impl Cell {
     #[must_use]
     pub fn arc_end(&self, number: u32) -> Option<&ArcEnd> {
         self.arc_ends.iter().find(|condition| condition.number == number)
+    }
+
+    /// What MPF#(number) stands for.
+    #[must_use]
+    pub fn pass(&self, number: u32) -> Pass {
+        let pass = self.passes.iter().find(|pass| pass.number == number);
+        pass.cloned().unwrap_or_else(|| Pass::plain(number))
     }
 
     /// The weave condition WEV#(number).

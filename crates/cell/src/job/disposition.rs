@@ -31,7 +31,6 @@ const SHIFT: Disposition = refused("position shifts are not built");
 const FRAMES: Disposition = refused("user frames come from the cell file and are not changed by jobs");
 const STRINGS: Disposition = refused("string functions are not built");
 const CELL_DATA: Disposition = refused("registers, flags, parameters and condition files are not kept");
-const MEMO: Disposition = refused("root-pass memory is not built");
 const RAMP: Disposition = refused("ramps of the arc's values are not built");
 const GROUPS: Disposition = refused("base axes, stations and second robots are not built");
 const OPERATOR: Disposition = refused("it asks the operator for a value");
@@ -74,8 +73,6 @@ const OTHERS: &[(&str, Disposition)] = &[
     ("LATESTJOB", Accepted("jobs do not change while they run")),
     ("LEN", STRINGS),
     ("MACRO1", refused("it runs a macro of the maker or integrator")),
-    ("MEMOF", MEMO),
-    ("MEMON", MEMO),
     ("MFRAME", FRAMES),
     ("MID$", STRINGS),
     ("MSHIFT", SHIFT),
@@ -165,7 +162,9 @@ fn of_data(data: &Data) -> Disposition {
 
 fn of_weld(weld: &Weld) -> Disposition {
     match weld {
-        Weld::WeaveOn(_) | Weld::WeaveOff | Weld::TrackOff => Executed,
+        Weld::WeaveOn(_) | Weld::WeaveOff | Weld::TrackOff | Weld::MemoryOn { .. } | Weld::MemoryOff => {
+            Executed
+        }
         Weld::TrackOn(tags) if tags.is_empty() => Executed,
         Weld::TrackOn(_) => Accepted(
             "its tags are those of tracking through the arc and have no effect: the cell's seam sensor is followed",

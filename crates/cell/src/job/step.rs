@@ -55,6 +55,15 @@ pub enum Action {
     TrackOn,
     /// Track it no longer.
     TrackOff,
+    /// What is tracked is kept, or welded from what was.
+    MemoryOn {
+        /// It is kept; otherwise played.
+        record: bool,
+        /// Number of the file, MPF.
+        file: u32,
+    },
+    /// That no longer.
+    MemoryOff,
     /// Stand still.
     Dwell {
         /// How long.

@@ -78,7 +78,8 @@ fn parts(instruction: &Instruction) -> Vec<Part<'_>> {
         Instruction::Io(io) => list.io(io),
         Instruction::Weld(Weld::ArcOn(tags) | Weld::ArcOff(tags) | Weld::ArcSet(tags)) => list.arc(tags),
         Instruction::Weld(Weld::WeaveOn(tags)) => list.weave(tags),
-        Instruction::Weld(Weld::WeaveOff | Weld::TrackOn(_) | Weld::TrackOff) => {}
+        Instruction::Weld(Weld::MemoryOn { file, .. }) => list.expressions([file.as_ref()]),
+        Instruction::Weld(Weld::WeaveOff | Weld::TrackOn(_) | Weld::TrackOff | Weld::MemoryOff) => {}
     }
     list.0
 }

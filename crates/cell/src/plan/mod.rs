@@ -14,6 +14,7 @@ mod hand_out;
 mod joint_corner;
 mod joint_move;
 mod joint_path;
+mod pass;
 mod planner;
 mod reach;
 mod remark;

@@ -9,6 +9,7 @@ use seamline::geometry::Pose;
 use super::arm::{Arm, PlanningArm};
 use super::error::{PlanError, Problem};
 use super::joint_move::JointMove;
+use super::pass::{Kept, Memo};
 use super::resolve::{self, Goal, ToolPose, goal};
 use super::run::{Link, Run, Stops};
 use super::speed;
@@ -79,6 +80,9 @@ pub struct Planner<'a, const N: usize, K> {
     pub(super) beside: bool,
     /// Where a seam is tracked.
     pub(super) section: Option<Section<N>>,
+    /// Between MEMON and MEMOF; and what is kept.
+    pub(super) memo: Option<Memo>,
+    pub(super) kept: Kept,
     segment: u32,
     pub(super) run: Run<N>,
     /// A joint move that waits for the step after it; the run is empty then.
@@ -103,6 +107,8 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             weave: None,
             beside: false,
             section: None,
+            memo: None,
+            kept: Kept::default(),
             segment: 0,
             run,
             held: None,
@@ -259,6 +265,8 @@ impl<'a, const N: usize, K: PlanningArm<N>> Planner<'a, N, K> {
             Action::WeaveOff => self.weave = None,
             Action::TrackOn => self.track_on()?,
             Action::TrackOff => self.track_off(&mut planned),
+            Action::MemoryOn { record, file } => self.memory_on(*record, *file)?,
+            Action::MemoryOff => self.memory_off()?,
             Action::Dwell { seconds } => self.dwell(*seconds, &mut planned),
             Action::Unsupported { text, reason } => {
                 return Err(Problem::Refused { text: text.clone(), reason: reason.clone() });

@@ -3,13 +3,14 @@
 //! Runs in it that go on from each other without a kink are one **weld**. The laser sees the next run while the torch is still in this one, so
 //! that the taught path must be known ahead; a corner, a turn on the spot or a joint move ends the weld, and behind it the tracking begins anew.
 
-use seamline::control::{Block, Command, Motion, TAUGHT_PATHS, Tracked, Tracking};
+use seamline::control::{Block, Command, Motion, Playing, TAUGHT_PATHS, Tracked, Tracking};
 use seamline::geometry::Pose;
 use seamline::path::{Measure, Path};
-use seamline::seam::{Filter, LostLane, Offset, PathChain, Sensor, Settings, TackMask};
+use seamline::seam::{Filter, LostLane, Offset, PathChain, RecordedWeld, Sensor, Settings, TackMask};
 
 use super::arm::PlanningArm;
 use super::error::{PlanError, Problem};
+use super::pass::{Means, Memo};
 use super::planner::{Planned, Planner};
 use crate::cell::{self, Cell, LostSeam, SeamFilter, SensorSource};
 
@@ -40,6 +41,8 @@ pub(super) struct Section<const N: usize> {
     s: f64,
     welds: Vec<Weld>,
     held: Vec<Planned<N>>,
+    /// What comes next is another weld.
+    breaks: bool,
     /// The weld that is tracked after all that was handed out, and how much of its path is known to the cycle.
     on: Option<(usize, usize)>,
 }
@@ -52,13 +55,16 @@ struct Weld {
     settings: Settings,
     flange_from_tcp: Pose,
     stop_after: Option<f64>,
+    means: Means,
+    /// Where it is welded from a record, how.
+    playing: Option<Playing>,
     /// It has been handed out, and its settings are fixed.
     begun: bool,
 }
 
 impl<const N: usize> Section<N> {
     fn new() -> Self {
-        Self { closed: false, s: 0.0, welds: Vec::new(), held: Vec::new(), on: None }
+        Self { closed: false, s: 0.0, welds: Vec::new(), held: Vec::new(), breaks: false, on: None }
     }
 
     pub(super) fn holds_back(&self) -> bool {
@@ -109,8 +115,11 @@ impl<const N: usize> Section<N> {
             known += 1;
         }
         if goes_on.is_none() {
-            let Weld { settings, flange_from_tcp, stop_after, .. } = *weld;
-            commands.push(Command::TrackOn(Tracking { settings, start: from, flange_from_tcp, stop_after }));
+            let Weld { settings, flange_from_tcp, stop_after, means, playing, .. } = *weld;
+            let length = weld.length();
+            let record = means.record(RecordedWeld { start: from, length, speed: settings.speed });
+            let tracking = Tracking { settings, start: from, flange_from_tcp, stop_after, record };
+            commands.push(playing.map_or(Command::TrackOn(tracking), Command::PlayOn));
         }
         weld.begun = true;
         self.on = Some((number, known));
@@ -139,6 +148,11 @@ impl Weld {
         let smooth = chain.push(last).is_ok() && chain.push(path).is_ok();
         let known = settings.speed <= self.settings.speed && settings.curvature <= self.settings.curvature;
         smooth && *tool == self.flange_from_tcp && (known || !self.begun)
+    }
+
+    /// Length of the taught path.
+    fn length(&self) -> f64 {
+        self.taught.iter().map(|(path, _)| path.length()).sum()
     }
 
     /// The most paths that the cycle must know at a time.
@@ -207,7 +221,7 @@ fn mounted(cell: &Cell, path: &Path) -> Result<Sensor, Problem> {
 impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     /// COMARCON: what follows is tracked.
     pub(super) fn track_on(&mut self) -> Result<(), Problem> {
-        if self.cell.sensor.source == SensorSource::None {
+        if self.cell.sensor.source == SensorSource::None && self.plays().is_none() {
             return Err(Problem::Track(
                 "the cell has no seam sensor: expected sensor.source \"simulated\", \"replay\" or \"egm\""
                     .into(),
@@ -215,6 +229,11 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         }
         self.section.get_or_insert_with(Section::new);
         Ok(())
+    }
+
+    /// The shift of the pass that is welded from a record here.
+    fn plays(&self) -> Option<Offset> {
+        self.memo.and_then(|memo| memo.shift())
     }
 
     /// COMARCOF.
@@ -260,6 +279,15 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         result.map_err(|(index, problem)| self.give_up(index, problem))
     }
 
+    /// A weld that begins at a coordinate.
+    fn weld_from(&mut self, s: f64, settings: Settings) -> Weld {
+        let (taught, flange_from_tcp) = (Vec::new(), self.tool.flange_from_tcp);
+        let stop_after = (self.cell.sensor.lost == LostSeam::Stop).then_some(self.cell.sensor.trend);
+        let means = self.memo.as_mut().map_or(Means::Sensor(None), Memo::next);
+        let playing = means.playing(s, &flange_from_tcp, settings.speed, self.cell);
+        Weld { taught, settings, flange_from_tcp, stop_after, means, playing, begun: false }
+    }
+
     fn track_in(
         &mut self,
         section: &mut Section<N>,
@@ -269,38 +297,43 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let pieces: Vec<(Path, f64)> =
             self.run.placed().map(|(_, piece)| (piece.path.seam(), piece.limits.speed)).collect();
         if pieces.iter().any(|(path, _)| path.measure() != Measure::Length) {
+            section.breaks = true;
             return Ok(());
         }
         let speed = pieces.iter().map(|(_, speed)| *speed).fold(0.0, f64::max);
         let bend = pieces.iter().map(|(path, _)| curvature(path)).fold(0.0, f64::max);
         let Some((path, _)) = pieces.first() else { return Ok(()) };
-        let bound = self.cell.sensor.correction_max;
+        let plays = self.plays();
+        let bound = self.cell.sensor.correction_max + plays.map_or(0.0, |shift| shift.norm());
         if bend * bound > MOST_BENT * (1.0 + SAME) {
             let text = format!(
                 "the tracked path bends with a radius of {:.1} mm: expected more than {:.1} mm (sensor.correction_max_mm is {:.1})",
                 1e3 / bend,
                 bound / MOST_BENT * 1e3,
-                bound * 1e3
+                self.cell.sensor.correction_max * 1e3
             );
             return Err(first(Problem::Track(text)));
         }
         let settings = settings(self.cell, mounted(self.cell, path).map_err(first)?, speed, bend);
-        settings.check().map_err(|error| first(Problem::Track(error.to_string())))?;
+        let suffices = |settings: &Settings| match plays {
+            Some(_) => Ok(()),
+            None => settings.check().map(|_| ()).map_err(|error| first(Problem::Track(error.to_string()))),
+        };
+        suffices(&settings)?;
         let tool = self.tool.flange_from_tcp;
-        if !section.welds.last().is_some_and(|weld| weld.takes(path, &settings, &tool)) {
-            let stop_after = (self.cell.sensor.lost == LostSeam::Stop).then_some(self.cell.sensor.trend);
-            let taught = Vec::new();
+        let breaks = std::mem::take(&mut section.breaks);
+        if breaks || !section.welds.last().is_some_and(|weld| weld.takes(path, &settings, &tool)) {
             self.beside = !section.welds.is_empty();
-            section.welds.push(Weld { taught, settings, flange_from_tcp: tool, stop_after, begun: false });
+            section.welds.push(self.weld_from(section.s, settings));
         }
         let Some(weld) = section.welds.last_mut() else { return Ok(()) };
         if !weld.begun {
             weld.settings.speed = weld.settings.speed.max(speed);
             weld.settings.curvature = weld.settings.curvature.max(bend);
-            weld.settings.check().map_err(|error| first(Problem::Track(error.to_string())))?;
+            suffices(&weld.settings)?;
         }
         // On the inner side of a bend the torch travels less than the taught path is long.
-        let headroom = ROOM / (1.0 - bend * settings.bound);
+        let headroom = ROOM / (1.0 - bend * bound);
         let mut s = section.s;
         let mut starts = Vec::with_capacity(pieces.len());
         for (path, _) in &pieces {
@@ -310,7 +343,8 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         }
         let begins = weld.taught.first().map_or(section.s, |(_, start)| *start);
         let blind = settings.sensor.look_ahead() + MET - (section.s - begins);
-        if let Some(piece) = self.run.piece(0).filter(|piece| piece.info.arc && blind > 0.0) {
+        let sees = plays.is_none();
+        if let Some(piece) = self.run.piece(0).filter(|piece| sees && piece.info.arc && blind > 0.0) {
             let text = format!(
                 "the arc is on for {:.0} mm before the seam is seen: a run-in without arc would be as long",
                 blind * 1e3
@@ -318,6 +352,7 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
             out.push(Planned { notices: vec![text], ..Planned::part(piece.link.at()) });
         }
         section.s = s;
+        self.kept.weld(&weld.means, weld.length(), weld.settings.speed).map_err(first)?;
         if weld.most_paths() > TAUGHT_PATHS {
             let text = format!(
                 "the tracked seam has more than {TAUGHT_PATHS} moves in the {:.0} mm that are known ahead",

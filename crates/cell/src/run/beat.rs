@@ -2,6 +2,7 @@
 
 use seamline::control::{CycleOutput, Event, Mode};
 use seamline::safety::Fault;
+use seamline::seam::LaneMemory;
 
 use super::clock::MonotonicClock;
 use super::inject::FaultScript;
@@ -51,6 +52,8 @@ pub(super) struct LoopFigures {
     pub(super) lateness: Option<TimeFigures>,
     pub(super) overruns: u64,
     pub(super) remarks: Vec<String>,
+    /// The memory of passes.
+    pub(super) memory: Box<LaneMemory>,
 }
 
 /// A controller on simulated devices, and what goes wrong with them.

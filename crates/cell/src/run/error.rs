@@ -41,6 +41,26 @@ pub enum RunError {
     /// The cell's seam sensor cannot be opened.
     #[error("{0}")]
     Sensor(#[from] crate::sensor::SensorError),
+    /// A record of passes has a mistake.
+    #[error("{path}: {mistake}")]
+    Records {
+        /// The file.
+        path: String,
+        /// Where, and what was expected.
+        mistake: crate::sensor::TableError,
+    },
+    /// A record of passes leads too far.
+    #[error(
+        "{path}: a correction of {most_mm:.2} mm: expected up to {permitted_mm:.2} mm (sensor.correction_max_mm)"
+    )]
+    Correction {
+        /// The file.
+        path: String,
+        /// The greatest correction.
+        most_mm: f64,
+        /// What the cell permits.
+        permitted_mm: f64,
+    },
     /// The program fails.
     #[error("{0}")]
     Job(#[from] JobError),

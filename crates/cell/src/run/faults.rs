@@ -42,6 +42,9 @@ pub fn describe(fault: &Fault, joints: &[JointInfo]) -> String {
         Fault::ArcLost { seconds } => {
             format!("the arc went out ({:.0} ms without current)", 1000.0 * seconds)
         }
+        Fault::NoRecord { file, weld } => {
+            format!("MPF#({file}) holds no whole record of weld {}", weld + 1)
+        }
         Fault::SeamLost { seen_to, dropped } => {
             let why = dropped.map_or("the sensor is silent", Rejection::name);
             format!(

@@ -9,6 +9,7 @@ use seamline::control::{
 use seamline::drive::Drive;
 use seamline::geometry::Pose;
 use seamline::safety::{Fault, WorkspaceBox};
+use seamline::seam::LaneMemory;
 use seamline::vibration::{Kernel, StageEntry, StageError, stage_entries};
 
 use super::clock::thread_cpu_ns;
@@ -158,6 +159,17 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock
         self.input.late = late;
     }
 
+    /// The memory of passes.
+    #[must_use]
+    pub fn memory(&self) -> &LaneMemory {
+        self.cycle.memory()
+    }
+
+    /// The memory of passes, for records of earlier runs: before a job that is to find them.
+    pub fn memory_mut(&mut self) -> &mut LaneMemory {
+        self.cycle.memory_mut()
+    }
+
     /// What it is connected to.
     pub fn devices_mut(&mut self) -> &mut Devices<D, A> {
         &mut self.devices
@@ -212,7 +224,7 @@ impl<const N: usize, K: PlanningArm<N>, D: Drive<N>, A: ArcSource, C: StageClock
         };
         if let Some(seam) = status.seam {
             (sample.seam_lateral, sample.seam_height) = (seam.offset.x, seam.offset.y);
-            let truth = self.devices.seam.true_seam(seam.s).filter(|_| seam.on_seam);
+            let truth = self.devices.seam.true_seam(seam.s).filter(|_| seam.on_seam && !seam.from_record);
             sample.seam_error = truth.map_or(f64::NAN, |truth| (seam.offset - truth).norm());
         }
         let joints = N.min(MAX_JOINTS);

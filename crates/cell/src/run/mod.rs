@@ -18,6 +18,7 @@ mod faults;
 mod feeder;
 mod inject;
 mod machine;
+mod passes;
 mod program;
 mod readings;
 mod realtime;

@@ -92,7 +92,8 @@ impl<const N: usize, K: PlanningArm<N>> Thread<N, K> {
         let stage_times = self.plant.machine.stage_times();
         remarks.extend(self.plant.machine.seam_remarks());
         let lateness = Some(lateness.figures("lateness"));
-        (self.samples, LoopFigures { stage_times, lateness, overruns, remarks })
+        let memory = Box::new(self.plant.machine.memory().clone());
+        (self.samples, LoopFigures { stage_times, lateness, overruns, remarks, memory })
     }
 }
 

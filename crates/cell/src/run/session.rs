@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use rtrb::RingBuffer;
 use seamline::control::ActsOn;
+use seamline::seam::LaneKey;
 
 use super::beat::{Beat, LoopFigures, Plant};
 use super::check::{CheckReport, check};
@@ -13,6 +14,7 @@ use super::clock::MonotonicClock;
 use super::error::RunError;
 use super::inject::FaultScript;
 use super::machine::{Devices, Machine};
+use super::passes;
 use super::program::Program;
 use super::realtime;
 use super::supervisor::Supervisor;
@@ -90,6 +92,13 @@ pub fn run<const N: usize, K: PlanningArm<N> + Send>(
     let devices = Devices { drive, arc: SimulatedArc::from_cell(cell), seam };
     let mut machine = Machine::new(cell, arm, devices, MonotonicClock::default(), consumer)?;
     machine.set_override(options.speed_override);
+    let records = passes::load(cell)?;
+    for (file, lanes) in &records {
+        for (weld, lane) in (0..).zip(lanes) {
+            // The planner refuses what needs more than the memory holds.
+            let _ = machine.memory_mut().insert(LaneKey { file: *file, weld }, &lane.record());
+        }
+    }
     let walk = Walk::new(program, cell, arm)?;
     let mut supervisor = Supervisor::new(walk, producer, reads_inputs, recorder, info.joints.clone());
     let started = Instant::now();
@@ -104,8 +113,9 @@ pub fn run<const N: usize, K: PlanningArm<N> + Send>(
     };
     let wall_time = Some(started.elapsed().as_secs_f64());
     let samples_lost = samples.lost();
-    let LoopFigures { stage_times, lateness, overruns, remarks } = figures;
+    let LoopFigures { stage_times, lateness, overruns, remarks, memory } = figures;
     let findings = supervisor.finish(samples).map_err(file)?;
+    passes::save(cell, &records, &passes::records(cell, &memory))?;
     let outcome = Outcome { stage_times, lateness, overruns, samples_lost, wall_time };
     let summary = Summary::new(&info, &findings, outcome);
     Ok(RunReport { info, findings, summary, remarks })
@@ -131,7 +141,8 @@ fn logical<const N: usize, K: PlanningArm<N>>(
         left -= u64::from(cycle > 2 && beat.ends_run());
     }
     let (stage_times, remarks) = (plant.machine.stage_times(), plant.machine.seam_remarks());
-    (samples, LoopFigures { stage_times, remarks, ..LoopFigures::default() })
+    let memory = Box::new(plant.machine.memory().clone());
+    (samples, LoopFigures { stage_times, remarks, memory, ..LoopFigures::default() })
 }
 
 /// The figures may be off by what the cell lets a prefilter on the joints do.

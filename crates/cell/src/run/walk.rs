@@ -1,6 +1,7 @@
 //! Interpreter and planner side by side: one step of the job, and what it becomes.
 
 use super::error::{Place, RunError};
+use super::passes;
 use super::program::Program;
 use super::world::CellWorld;
 use crate::cell::{Cell, SpeedUnit};
@@ -29,8 +30,11 @@ pub(super) struct Walk<'a, const N: usize, K> {
 
 impl<'a, const N: usize, K: PlanningArm<N>> Walk<'a, N, K> {
     pub(super) fn new(program: &'a Program, cell: &'a Cell, arm: &'a Arm<N, K>) -> Result<Self, RunError> {
-        let planner = Planner::new(arm, cell, arm.home)
+        let mut planner = Planner::new(arm, cell, arm.home)
             .map_err(|problem| RunError::Plan { at: program.start(), problem })?;
+        for (file, lanes) in passes::load(cell)? {
+            planner.remember_passes(file, &lanes);
+        }
         let world = CellWorld::new(cell, arm);
         let reader = match program {
             Program::Inform(jobs) => {

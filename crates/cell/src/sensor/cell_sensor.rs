@@ -3,10 +3,11 @@
 use seamline::seam::{Instant, Offset, Reading, SeamSensor, Sensor, TaughtPath};
 use thiserror::Error;
 
-use super::csv::{self, ReadingsError};
+use super::csv;
 use super::egm::{EgmSensor, EgmSettings};
 use super::laser::SimulatedLaser;
 use super::replay::Replay;
+use super::table::TableError;
 use crate::cell::{Cell, SensorSource};
 
 /// How far aside readings jump, in metres.
@@ -55,7 +56,7 @@ pub enum SensorError {
         /// The file.
         path: String,
         /// Where, and what was expected.
-        mistake: ReadingsError,
+        mistake: TableError,
     },
     /// The address cannot be bound, or the thread cannot be started.
     #[error("seam sensor: {0}")]

@@ -1,9 +1,9 @@
 //! Readings as a CSV file.
 
 use seamline::seam::Reading;
-use thiserror::Error;
 
-use crate::record::number::{parse, parse_mm, push, push_mm};
+use super::table::{Row, TableError, rows};
+use crate::record::number::{push, push_mm};
 
 /// The columns, in this order.
 pub const HEADER: &str = "arrival_s,exposure_s,lateral_mm,height_mm,gap_mm,quality";
@@ -16,37 +16,6 @@ pub struct Arrival {
     pub time: f64,
     /// What arrived.
     pub reading: Reading,
-}
-
-/// What is wrong with a file of readings, and where. Lines and columns count from 1, columns in fields.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum ReadingsError {
-    /// Another first line.
-    #[error("line 1: `{found}`: expected the columns {HEADER}")]
-    Header {
-        /// What stands there, cut to a readable length.
-        found: String,
-    },
-    /// Too few fields, or too many.
-    #[error("line {line}: {found} columns: expected {}, {HEADER}", NAMES.len())]
-    Columns {
-        /// Which line.
-        line: usize,
-        /// How many fields it has.
-        found: usize,
-    },
-    /// A field that is not as its column wants it.
-    #[error("line {line}, column {column} ({}): `{found}`: expected {expected}", NAMES[column - 1])]
-    Field {
-        /// Which line.
-        line: usize,
-        /// Which field.
-        column: usize,
-        /// What stands there, cut to a readable length.
-        found: String,
-        /// What could stand there.
-        expected: &'static str,
-    },
 }
 
 /// Writes readings; [`read`] gives the same back, bit for bit. What is no number stays an empty field.
@@ -76,54 +45,31 @@ pub fn write(arrivals: &[Arrival]) -> String {
 ///
 /// # Errors
 /// The first mistake, with line and column.
-pub fn read(text: &str) -> Result<Vec<Arrival>, ReadingsError> {
-    let text = text.trim_start_matches('\u{feff}');
-    let mut lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
-    let header = lines.next().map_or("", |(_, line)| line);
-    if !header.split(',').map(str::trim).eq(NAMES) {
-        return Err(ReadingsError::Header { found: cut(header) });
-    }
+pub fn read(text: &str) -> Result<Vec<Arrival>, TableError> {
     let mut arrivals: Vec<Arrival> = Vec::new();
-    for (line, content) in lines {
-        if content.is_empty() || content.starts_with('#') {
-            continue;
-        }
+    for row in rows(text, &NAMES)? {
         let before = arrivals.last().map_or(f64::NEG_INFINITY, |arrival| arrival.time);
-        arrivals.push(row(line, content, before)?);
+        arrivals.push(arrival(&row, before)?);
     }
     Ok(arrivals)
 }
 
-fn row(line: usize, content: &str, before: f64) -> Result<Arrival, ReadingsError> {
-    let fields: Vec<&str> = content.split(',').map(str::trim).collect();
-    let Ok(fields) = <[&str; NAMES.len()]>::try_from(fields.as_slice()) else {
-        return Err(ReadingsError::Columns { line, found: fields.len() });
-    };
-    let error = |index: usize, expected| ReadingsError::Field {
-        line,
-        column: index + 1,
-        found: cut(fields[index]),
-        expected,
-    };
+fn arrival(row: &Row<'_>, before: f64) -> Result<Arrival, TableError> {
     let seconds = |index: usize| {
-        parse(fields[index]).filter(|time| time.is_finite()).ok_or_else(|| error(index, "seconds"))
+        let time = row.number(index, "seconds")?;
+        if time.is_finite() { Ok(time) } else { Err(row.error(index, "seconds")) }
     };
-    let length =
-        |index: usize| parse_mm(fields[index]).ok_or_else(|| error(index, "millimetres, or nothing"));
+    let length = |index: usize| row.length(index, "millimetres, or nothing");
     let time = seconds(0)?;
     if time < before {
-        return Err(error(0, "no earlier arrival than in the row before"));
+        return Err(row.error(0, "no earlier arrival than in the row before"));
     }
     let exposure = seconds(1)?;
     if exposure > time {
-        return Err(error(1, "an exposure before the arrival"));
+        return Err(row.error(1, "an exposure before the arrival"));
     }
     let gap = Some(length(4)?).filter(|gap| !gap.is_nan());
-    let quality = parse(fields[5]).ok_or_else(|| error(5, "a number, or nothing"))?;
+    let quality = row.number(5, "a number, or nothing")?;
     let reading = Reading { lateral: length(2)?, height: length(3)?, gap, exposure, quality };
     Ok(Arrival { time, reading })
-}
-
-fn cut(text: &str) -> String {
-    text.chars().take(60).collect()
 }

@@ -198,8 +198,9 @@ const FORMS: &[(&str, &str, char)] = &[
     ("COMARCON", "TrackOn", 'e'),
     ("COMARCON AMP=1.0 FREQ=3.0 U/D=200 L/R=1.0", "TrackOn", 'a'),
     ("COMARCOF", "TrackOff", 'e'),
-    ("MEMON REC MPF#(1)", "Other MEMON", 'r'),
-    ("MEMOF", "Other MEMOF", 'r'),
+    ("MEMON REC MPF#(1)", "MemoryOn", 'e'),
+    ("MEMON PLY MPF#(B001)", "MemoryOn", 'e'),
+    ("MEMOF", "MemoryOff", 'e'),
     ("MACRO1 MJ#(0) ARGF10", "Other MACRO1", 'r'),
     // The rest.
     ("NOP", "Nop", 'e'),

@@ -16,6 +16,7 @@ mod faults;
 mod feedrate;
 mod joint_chain;
 mod no_alloc;
+mod passes;
 mod pause;
 mod prefilter;
 mod recorded;

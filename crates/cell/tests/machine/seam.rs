@@ -118,7 +118,7 @@ impl World for Quiet {
     }
 }
 
-fn steps(text: &str) -> Vec<Step> {
+pub(crate) fn steps(text: &str) -> Vec<Step> {
     let file = JobFile::parse("seam.JBI", text.as_bytes()).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let set = JobSet::from_files(vec![file]).unwrap();
     let mut interpreter = Interpreter::new(&set, LinearSpeedUnit::default());

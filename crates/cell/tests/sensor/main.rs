@@ -5,6 +5,7 @@
 mod datagrams;
 mod egm_client;
 mod laser;
+mod passes;
 mod replay;
 
 use seamline::geometry::{Pose, Vector3};

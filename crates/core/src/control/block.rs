@@ -1,6 +1,6 @@
 //! Blocks: what a planner hands to the cycle, piece by piece, through a bounded queue.
 
-use super::seam::{Tracked, Tracking};
+use super::seam::{Playing, Tracked, Tracking};
 use crate::arc::ArcSetting;
 use crate::geometry::{Pose, PoseJet};
 use crate::otg::{Sample, Trajectory};
@@ -45,7 +45,9 @@ pub enum Command<const N: usize> {
     },
     /// The seam is tracked from here on. The arm is at rest.
     TrackOn(Tracking),
-    /// The seam is tracked no longer. The arm is at rest.
+    /// A pass is welded from the record of an earlier one from here on. The arm is at rest.
+    PlayOn(Playing),
+    /// The seam is tracked, or the record played, no longer. The arm is at rest.
     TrackOff,
     /// A place in the program that the status reports when it is passed. Numbers rise.
     Marker(u32),

@@ -16,7 +16,7 @@ use crate::drive::{DriveFault, JointCommand};
 use crate::geometry::Pose;
 use crate::kinematics::{JointJet, Kinematics};
 use crate::safety::{Envelope, Fault, MotionLimits, StopCategory, WorkspaceBox};
-use crate::seam::SeamSensor;
+use crate::seam::{LaneMemory, SeamSensor};
 
 /// Least distance of the look-ahead's samples in seconds.
 const SAMPLE_SPACING: f64 = 1e-3;
@@ -151,6 +151,17 @@ where
     #[must_use]
     pub fn mode(&self) -> Mode {
         self.mode
+    }
+
+    /// The memory of passes: what was recorded, and stays over the ends of jobs.
+    #[must_use]
+    pub fn memory(&self) -> &LaneMemory {
+        self.program.guide.memory()
+    }
+
+    /// The memory of passes, for records of earlier runs: before a job that is to find them.
+    pub fn memory_mut(&mut self) -> &mut LaneMemory {
+        self.program.guide.memory_mut()
     }
 
     /// One cycle: takes what was measured, gives the next command. Always answers; a fault stops the arm as its

@@ -38,5 +38,5 @@ pub use mode::{Event, Mode};
 pub use prefilter::{ActsOn, CommandPrefilter, CommandSignal, MODES_MAX, PrefilterEntry};
 pub use program::CommandSource;
 pub use rails::RAIL_MOVES;
-pub use seam::{SeamStatus, TAUGHT_PATHS, Tracked, Tracking};
+pub use seam::{Playing, SeamStatus, TAUGHT_PATHS, Tracked, Tracking};
 pub use telemetry::{CycleOutput, NoClock, STAGES, StageClock, Status};

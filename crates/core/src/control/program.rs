@@ -5,7 +5,7 @@ use super::history::{Done, History};
 use super::lookahead::{AlongPath, JointMotion, Lookahead};
 use super::rails::{OnRails, Rails};
 use super::rate::{Rate, RateLimits};
-use super::seam::{Corrections, Fade, SeamGuide, SeamStatus, Tracking, shown_rate};
+use super::seam::{Corrections, Fade, Playing, SeamGuide, SeamStatus, Tracking, shown_rate};
 use super::trail::{Mark, Way};
 use crate::geometry::{Pose, PoseJet};
 use crate::kinematics::{JointJet, Kinematics};
@@ -118,8 +118,36 @@ impl<const N: usize> Program<N> {
 
     /// Forgets all commands; the arm is at rest at `position`.
     pub(super) fn clear(&mut self, position: [f64; N]) {
-        let place = Place { mark: Mark { arc: false, ..self.place.mark }, ended: false, ..self.place };
-        *self = Self { place, ..Self::at_rest(position, self.place.flange_from_tcp, self.ahead.spacing()) };
+        // In place: with its memory of passes it is too large to be copied in each cycle without power. Every field is named.
+        let Self {
+            pending: _,
+            first,
+            count,
+            now,
+            move_start,
+            way_before,
+            arriving,
+            done,
+            rails,
+            backward,
+            arc_way,
+            dwell_left,
+            rate,
+            ahead,
+            ahead_position,
+            position: here,
+            place,
+            guide,
+            fade,
+            speed,
+        } = self;
+        (*first, *count, *arriving, *backward, *dwell_left) = (0, 0, false, None, None);
+        (*now, *move_start, *arc_way, *speed) = (0.0, 0.0, 0.0, 0.0);
+        (*way_before, *done, *rails, *fade) = (Way::default(), History::new(), Rails::new(), None);
+        (*rate, *ahead) = (Rate::constant(0.0), Lookahead::new(ahead.spacing()));
+        (*here, *ahead_position) = (position, position);
+        (place.mark.arc, place.ended) = (false, false);
+        guide.clear();
     }
 
     pub(super) fn place(&self) -> &Place {
@@ -245,6 +273,10 @@ impl<const N: usize> Program<N> {
                 let tracking = *tracking;
                 self.track(&tracking, kinematics, limits)?;
             }
+            Some(Command::PlayOn(playing)) => {
+                let playing = *playing;
+                self.play(&playing, kinematics, limits)?;
+            }
             Some(Command::TrackOff) => self.leave_seam(kinematics, limits)?,
             Some(Command::End) => {
                 self.place.ended = true;
@@ -305,7 +337,7 @@ impl<const N: usize> Program<N> {
             Some(Command::Move(block)) => Some((self.way_before.path, block)),
             _ => None,
         };
-        self.rails.at(way, head, self.guide.lane())
+        self.rails.at(way, head, self.guide.correction())
     }
 
     /// Path covered up to the start of the move under way, and up to its end.
@@ -324,7 +356,7 @@ impl<const N: usize> Program<N> {
     }
 
     pub(super) fn corrections(&self) -> Corrections<'_, N> {
-        Corrections { lane: self.guide.lane(), fade: self.fade.as_ref() }
+        Corrections { seam: self.guide.correction(), fade: self.fade.as_ref() }
     }
 
     /// What takes the joints off the paths at a programme time, after a seam was tracked.
@@ -398,7 +430,29 @@ impl<const N: usize> Program<N> {
     ) -> Result<(), Fault> {
         let tcp = kinematics.forward(&self.position) * tracking.flange_from_tcp;
         let seam = self.guide.begin(tracking, &tcp.translation.vector);
-        let flange = seam.attached(&tracking.flange_from_tcp.inverse());
+        self.enter_seam(&seam, &tracking.flange_from_tcp, kinematics, limits)
+    }
+
+    /// A pass begins where the arm stands.
+    fn play<K: Kinematics<N>>(
+        &mut self,
+        playing: &Playing,
+        kinematics: &K,
+        limits: &RateLimits<N>,
+    ) -> Result<(), Fault> {
+        let seam = self.guide.play(playing)?;
+        self.enter_seam(&seam, &playing.flange_from_tcp, kinematics, limits)
+    }
+
+    /// From where the arm stands on to the corrected path.
+    fn enter_seam<K: Kinematics<N>>(
+        &mut self,
+        seam: &PoseJet,
+        flange_from_tcp: &Pose,
+        kinematics: &K,
+        limits: &RateLimits<N>,
+    ) -> Result<(), Fault> {
+        let flange = seam.attached(&flange_from_tcp.inverse());
         let planned = joints_of(&flange, &self.position, kinematics)?.position;
         self.done = History::new();
         self.fade_from(&planned, limits);
@@ -410,7 +464,7 @@ impl<const N: usize> Program<N> {
         self.guide.end();
         if let Some(done) = self.done.at(self.now) {
             let at = At { block: &done.block, start: done.start, since: done.block.duration() };
-            let none = Corrections { lane: None, fade: None };
+            let none = Corrections { seam: None, fade: None };
             let planned = joints_on(&at, &self.position, &none, kinematics)?.position;
             if self.fade.is_some_and(|fade| fade.rate(self.now) < 1.0) {
                 // Only one difference can be gone back through.
@@ -644,7 +698,7 @@ fn joints_on<const N: usize, K: Kinematics<N>>(
             let (position, velocity) = (state.position, state.velocity);
             JointJet { position, velocity, acceleration: state.acceleration, jerk: state.jerk }
         }
-        Motion::Path(motion) => joints_of(&motion.flange_on(at.since, corrections.lane), seed, kinematics)?,
+        Motion::Path(motion) => joints_of(&motion.flange_on(at.since, corrections.seam), seed, kinematics)?,
     };
     if let Some(fade) = corrections.fade {
         fade.add(&mut jet, at.start + at.since);

@@ -1,10 +1,9 @@
 //! The path that the tool is still on when the program is beyond it: for prefilters on the feedrate.
 
 use super::block::{Block, Motion};
-use super::seam::Rail;
+use super::seam::{Correction, Rail};
 use crate::geometry::PoseJet;
 use crate::path::PathState;
-use crate::seam::Lane;
 
 /// Moves that the cycle remembers: as many may lie within the length of prefilters on the feedrate.
 pub const RAIL_MOVES: usize = 64;
@@ -47,11 +46,15 @@ fn rail<const N: usize>(block: &Block<N>) -> Option<(f64, Rail)> {
 
 impl OnRails {
     /// At a way from a move's start, with its velocity and acceleration.
-    fn on(rail: Option<&(f64, Rail)>, [way, velocity, acceleration]: [f64; 3], lane: Option<&Lane>) -> Self {
+    fn on(
+        rail: Option<&(f64, Rail)>,
+        [way, velocity, acceleration]: [f64; 3],
+        correction: Option<Correction<'_>>,
+    ) -> Self {
         rail.map_or(Self::Joints, |(start, rail)| {
             let position = (start + way).clamp(0.0, rail.length());
             let state = PathState { position, velocity, acceleration, jerk: 0.0 };
-            Self::Path(rail.flange(&state, lane))
+            Self::Path(rail.flange(&state, correction))
         })
     }
 }
@@ -69,16 +72,16 @@ impl Rails {
     }
 
     /// What is at a place of the way, with its velocity and acceleration; `head` is the move that begins where those laid end, at the way
-    /// given, and `lane` that of the tracked seam. Beyond all that is known it is the end of that; at its start the start.
+    /// given, and `correction` that of a tracked seam. Beyond all that is known it is the end of that; at its start the start.
     pub(super) fn at<const N: usize>(
         &self,
         motion: [f64; 3],
         head: Option<(f64, &Block<N>)>,
-        lane: Option<&Lane>,
+        correction: Option<Correction<'_>>,
     ) -> OnRails {
         let [way, velocity, acceleration] = motion;
         if let Some((from, block)) = head.filter(|(from, _)| way >= *from) {
-            return OnRails::on(rail(block).as_ref(), [way - from, velocity, acceleration], lane);
+            return OnRails::on(rail(block).as_ref(), [way - from, velocity, acceleration], correction);
         }
         let laid = || {
             (1..=RAIL_MOVES.min(self.count))
@@ -87,7 +90,7 @@ impl Rails {
         let Some(here) = laid().find(|laid| laid.from <= way) else {
             return if self.count > RAIL_MOVES { OnRails::Forgotten } else { OnRails::Joints };
         };
-        OnRails::on(here.rail.as_ref(), [way.min(here.to) - here.from, velocity, acceleration], lane)
+        OnRails::on(here.rail.as_ref(), [way.min(here.to) - here.from, velocity, acceleration], correction)
     }
 }
 

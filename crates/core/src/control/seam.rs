@@ -12,8 +12,8 @@ use crate::math::float::cbrt;
 use crate::path::{Path, PathState, SeamFrame};
 use crate::safety::Fault;
 use crate::seam::{
-    Counts, Instant, Lane, LaneJet, Offset, PathChain, SeamSensor, SeamTracker, Settings, TaughtPath,
-    corrected, speed_factor,
+    Counts, Instant, Lane, LaneJet, LaneKey, LaneMemory, LaneRecord, Offset, Pass, PathChain, RecordedWeld,
+    SeamSensor, SeamTracker, Settings, TaughtPath, corrected, speed_factor,
 };
 
 /// Paths of the weld that are known ahead of the torch, at most.
@@ -48,6 +48,21 @@ pub struct Tracking {
     pub flange_from_tcp: Pose,
     /// So far beyond the last place where the seam was seen the torch stops, in metres; `None` where it goes on.
     pub stop_after: Option<f64>,
+    /// Where its lane is kept, and what it is kept of.
+    pub record: Option<(LaneKey, RecordedWeld)>,
+}
+
+/// A pass that is welded from the record of an earlier one, in place of tracking.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Playing {
+    /// The record.
+    pub key: LaneKey,
+    /// How this pass lies from it.
+    pub pass: Pass,
+    /// Coordinate of the weld at which it begins, in metres.
+    pub start: f64,
+    /// Tool centre point in the flange frame.
+    pub flange_from_tcp: Pose,
 }
 
 /// That a path of a block follows the tracked seam.
@@ -72,12 +87,33 @@ pub struct SeamStatus {
     pub lost: bool,
     /// The torch moves along the tracked seam.
     pub on_seam: bool,
+    /// The correction is that of an earlier pass.
+    pub from_record: bool,
+}
+
+/// Where the correction comes from.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Correction<'a> {
+    /// The lane of the seam that is tracked.
+    Lane(&'a Lane),
+    /// That of an earlier pass, from the coordinate at which the weld begins.
+    Record(LaneRecord<'a>, Pass, f64),
+}
+
+impl Correction<'_> {
+    /// At a coordinate: as frozen, ahead of that as it would go on.
+    fn at(&self, s: f64) -> LaneJet {
+        match self {
+            Self::Lane(lane) => lane.at(s).or_else(|| lane.expected(s)).unwrap_or(LaneJet::TAUGHT),
+            Self::Record(record, pass, start) => record.of_pass(pass, s - start),
+        }
+    }
 }
 
 /// What takes the joints off the planned motion.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Corrections<'a, const N: usize> {
-    pub(super) lane: Option<&'a Lane>,
+    pub(super) seam: Option<Correction<'a>>,
     pub(super) fade: Option<&'a Fade<N>>,
 }
 
@@ -94,6 +130,9 @@ pub(super) struct Fade<const N: usize> {
 pub(super) struct SeamGuide {
     tracker: Option<SeamTracker>,
     tracking: Option<Tracking>,
+    /// The pass that is welded from a record; nothing is tracked then.
+    playing: Option<Playing>,
+    memory: LaneMemory,
     taught: PathChain<TAUGHT_PATHS>,
     /// Coordinate of the taught path's end; `None` where the next path begins another one.
     taught_to: Option<f64>,
@@ -110,12 +149,28 @@ impl SeamGuide {
         Self {
             tracker: None,
             tracking: None,
+            playing: None,
+            memory: LaneMemory::new(),
             taught: PathChain::new(0.0),
             taught_to: None,
             stopped: f64::NEG_INFINITY,
             on: false,
             s: 0.0,
         }
+    }
+
+    /// Nothing is tracked any more. The memory stays.
+    pub(super) fn clear(&mut self) {
+        self.end();
+        (self.tracker, self.tracking, self.playing, self.s) = (None, None, None, 0.0);
+    }
+
+    pub(super) fn memory(&self) -> &LaneMemory {
+        &self.memory
+    }
+
+    pub(super) fn memory_mut(&mut self) -> &mut LaneMemory {
+        &mut self.memory
     }
 
     /// The taught path goes on from a coordinate. A path that the planner should not have sent is left out: the seam is not seen there.
@@ -135,13 +190,34 @@ impl SeamGuide {
         let offset = SeamFrame::of(&jet)
             .map_or_else(Offset::zeros, |frame| Offset::new(off.dot(&frame.y), off.dot(&frame.z)));
         self.tracker = SeamTracker::try_new(&tracking.settings, tracking.start, offset).ok();
-        (self.tracking, self.on, self.s) = (Some(*tracking), true, tracking.start);
-        self.stopped = f64::NEG_INFINITY;
-        correct(&jet, self.lane(), tracking.start)
+        if let (Some(tracker), Some((key, weld))) = (&self.tracker, &tracking.record) {
+            if key.weld == 0 {
+                self.memory.forget(key.file);
+            }
+            // What finds no room has no record, and no pass is welded from it.
+            let _ = self.memory.open(*key, tracker.lane(), weld);
+        }
+        (self.tracking, self.playing, self.on, self.s) = (Some(*tracking), None, true, tracking.start);
+        correct(&jet, self.correction(), tracking.start)
+    }
+
+    /// A pass begins: gives the motion of the corrected path there.
+    ///
+    /// # Errors
+    /// [`Fault::NoRecord`].
+    pub(super) fn play(&mut self, playing: &Playing) -> Result<PoseJet, Fault> {
+        let LaneKey { file, weld } = playing.key;
+        if !self.memory.record(playing.key).is_some_and(|record| record.is_whole()) {
+            return Err(Fault::NoRecord { file, weld });
+        }
+        (self.tracker, self.tracking, self.playing) = (None, None, Some(*playing));
+        (self.on, self.s) = (true, playing.start);
+        Ok(correct(&self.taught.jet(playing.start), self.correction(), playing.start))
     }
 
     /// Readings are taken no longer; the lane stays for the way back.
     pub(super) fn end(&mut self) {
+        self.memory.close();
         (self.on, self.taught_to) = (false, None);
     }
 
@@ -149,7 +225,16 @@ impl SeamGuide {
         self.on
     }
 
-    pub(super) fn lane(&self) -> Option<&Lane> {
+    pub(super) fn correction(&self) -> Option<Correction<'_>> {
+        match &self.playing {
+            Some(Playing { key, pass, start, .. }) => {
+                self.memory.record(*key).map(|record| Correction::Record(record, *pass, *start))
+            }
+            None => self.lane().map(Correction::Lane),
+        }
+    }
+
+    fn lane(&self) -> Option<&Lane> {
         self.tracker.as_ref().map(SeamTracker::lane)
     }
 
@@ -161,13 +246,16 @@ impl SeamGuide {
 
     /// One cycle: the torch is where the measurement says. Takes what the sensor has.
     pub(super) fn sense(&mut self, torch: &Instant, sensor: &mut impl SeamSensor) {
-        let (true, Some(tracker), Some(tracking)) = (self.on, &mut self.tracker, &self.tracking) else {
+        if !self.on {
             return;
-        };
+        }
         self.s = torch.s;
         self.taught.drop_before(torch.s - KEPT);
+        let (Some(tracker), Some(tracking)) = (&mut self.tracker, &self.tracking) else { return };
         let path_end = self.taught_to.unwrap_or(torch.s);
-        tracker.step(torch.time, torch.s, &torch.base_from_tcp, path_end);
+        if let Some(frozen) = tracker.step(torch.time, torch.s, &torch.base_from_tcp, path_end) {
+            let _ = self.memory.keep(&frozen);
+        }
         for _ in 0..READINGS {
             let Some(reading) = sensor.poll(torch, &tracking.settings.sensor, &self.taught) else { break };
             // What is wrong with it is counted.
@@ -191,14 +279,17 @@ impl SeamGuide {
         let Motion::Path(motion) = &block.motion else { return 1.0 };
         let Some(tracked) = motion.tracked else { return 1.0 };
         let s = motion.state(time).position;
-        let (factor, _) = speed_factor(&correct(&motion.path.seam_jet(s), self.lane(), tracked.start + s));
+        let (factor, _) =
+            speed_factor(&correct(&motion.path.seam_jet(s), self.correction(), tracked.start + s));
         (1.0 / (tracked.headroom * factor)).min(1.0)
     }
 
     pub(super) fn status(&self, s: f64, on_seam: bool) -> Option<SeamStatus> {
-        let tracker = self.tracker.as_ref().filter(|_| self.on)?;
-        let offset = lane_jet(Some(tracker.lane()), s).offset;
-        Some(SeamStatus { s, offset, counts: *tracker.counts(), lost: tracker.lost().is_some(), on_seam })
+        let offset = self.correction().filter(|_| self.on)?.at(s).offset;
+        let tracker = self.tracker.as_ref();
+        let counts = tracker.map_or(Counts::default(), |tracker| *tracker.counts());
+        let lost = tracker.is_some_and(|tracker| tracker.lost().is_some());
+        Some(SeamStatus { s, offset, counts, lost, on_seam, from_record: self.playing.is_some() })
     }
 
     /// The coordinate where the torch was last.
@@ -207,13 +298,8 @@ impl SeamGuide {
     }
 }
 
-/// The lane at a coordinate: as frozen, ahead of that as it would go on.
-fn lane_jet(lane: Option<&Lane>, s: f64) -> LaneJet {
-    lane.and_then(|lane| lane.at(s).or_else(|| lane.expected(s))).unwrap_or(LaneJet::TAUGHT)
-}
-
-fn correct(taught: &PoseJet, lane: Option<&Lane>, s: f64) -> PoseJet {
-    corrected(taught, &lane_jet(lane, s)).unwrap_or(*taught)
+fn correct(taught: &PoseJet, correction: Option<Correction<'_>>, s: f64) -> PoseJet {
+    correction.and_then(|correction| corrected(taught, &correction.at(s))).unwrap_or(*taught)
 }
 
 /// What the tool moves along, and how the flange goes with it.
@@ -234,26 +320,32 @@ impl Rail {
         self.path.length()
     }
 
-    /// The flange's motion in a state of the path, on the lane where the path is tracked.
-    pub(super) fn flange(&self, state: &PathState, lane: Option<&Lane>) -> PoseJet {
-        on_seam(&self.path, self.tracked.as_ref(), state, lane).attached(&self.tcp_from_flange)
+    /// The flange's motion in a state of the path, corrected where the path is tracked.
+    pub(super) fn flange(&self, state: &PathState, correction: Option<Correction<'_>>) -> PoseJet {
+        on_seam(&self.path, self.tracked.as_ref(), state, correction).attached(&self.tcp_from_flange)
     }
 }
 
-/// The motion of the tool centre point in a state of a path, on the lane where the path is tracked.
-fn on_seam(path: &Path, tracked: Option<&Tracked>, state: &PathState, lane: Option<&Lane>) -> PoseJet {
+/// The motion of the tool centre point in a state of a path, corrected where the path is tracked.
+fn on_seam(
+    path: &Path,
+    tracked: Option<&Tracked>,
+    state: &PathState,
+    correction: Option<Correction<'_>>,
+) -> PoseJet {
     let s = state.position;
     let tcp = match tracked {
         None => path.jet(s),
-        Some(tracked) => path.weave_about(&correct(&path.seam_jet(s), lane, tracked.start + s), s),
+        Some(tracked) => path.weave_about(&correct(&path.seam_jet(s), correction, tracked.start + s), s),
     };
     tcp.in_time([state.velocity, state.acceleration, state.jerk])
 }
 
 impl PathMotion {
-    /// The flange's motion in programme time at a time since the block's start, on the lane where the path is tracked.
-    pub(super) fn flange_on(&self, time: f64, lane: Option<&Lane>) -> PoseJet {
-        on_seam(&self.path, self.tracked.as_ref(), &self.state(time), lane).attached(&self.tcp_from_flange)
+    /// The flange's motion in programme time at a time since the block's start, corrected where the path is tracked.
+    pub(super) fn flange_on(&self, time: f64, correction: Option<Correction<'_>>) -> PoseJet {
+        on_seam(&self.path, self.tracked.as_ref(), &self.state(time), correction)
+            .attached(&self.tcp_from_flange)
     }
 }
 

@@ -49,6 +49,17 @@ impl Taylor {
         [c1, 2.0 * c2, 6.0 * c3]
     }
 
+    /// 10x³ − 15x⁴ + 6x⁵ at x in 0 … 1, where x changes at this rate: from 0 to 1 with two continuous derivatives at either end.
+    #[must_use]
+    pub fn smooth_step(x: f64, rate: f64) -> Self {
+        let rest = 1.0 - x;
+        let value = x * x * x * (10.0 + x * (6.0 * x - 15.0));
+        let d1 = 30.0 * x * x * rest * rest;
+        let d2 = 60.0 * x * rest * (1.0 - 2.0 * x);
+        let d3 = 60.0 * (1.0 - 6.0 * x * rest);
+        Self::from_derivatives(value, d1 * rate, d2 * rate * rate, d3 * rate * rate * rate)
+    }
+
     /// Largest magnitude among the coefficients of t, t² and t³: zero where the function stands still.
     #[inline]
     #[must_use]

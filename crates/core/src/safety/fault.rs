@@ -100,6 +100,13 @@ pub enum Fault {
         /// Why the sensor's last reading was dropped; `None` where there was none.
         dropped: Option<Rejection>,
     },
+    /// A pass is to be welded from a record that is not there, or not whole.
+    NoRecord {
+        /// Number of the memory file, MPF.
+        file: u32,
+        /// Number of the weld in it, from 0 on.
+        weld: u32,
+    },
 }
 
 /// How the arm is brought to rest, in the words of IEC 60204-1; from the mildest to the severest.
@@ -124,7 +131,8 @@ impl Fault {
             | Self::EmergencyStop
             | Self::ArcNotLit { .. }
             | Self::ArcLost { .. }
-            | Self::SeamLost { .. } => StopCategory::Category2,
+            | Self::SeamLost { .. }
+            | Self::NoRecord { .. } => StopCategory::Category2,
             Self::PositionLimit { .. }
             | Self::VelocityLimit { .. }
             | Self::AccelerationLimit { .. }

@@ -8,8 +8,11 @@
 //! so that what the lane demands is known before the torch is there. Between the knots k and k + 1 the points k − 1 … k + 2 count.
 
 use super::Offset;
-use crate::math::float::floor;
+use crate::math::float::{cbrt, floor};
+use crate::math::taylor::Taylor;
 
+/// Coordinates nearer to each other than this are one, in metres.
+const SAME_PLACE: f64 = 1e-6;
 /// Control points held, behind the torch and ahead of it.
 const CAPACITY: usize = 256;
 
@@ -82,6 +85,12 @@ impl Lane {
         (self.first <= k && k < self.end).then(|| self.points[slot(k)])
     }
 
+    /// Number of the oldest control point that is still held.
+    #[must_use]
+    pub fn oldest(&self) -> i64 {
+        self.first
+    }
+
     /// Number of the control point that freezes next.
     #[must_use]
     pub fn next(&self) -> i64 {
@@ -111,23 +120,110 @@ pub struct LaneRecord<'a> {
     pub spacing: f64,
     /// Number of the first control point: it stands at s = first · Δ.
     pub first: i64,
+    /// The weld.
+    pub weld: RecordedWeld,
     /// The control points, one after the other, as they froze.
     pub points: &'a [Offset],
-    /// How far this pass lies from that one: to the left and up, in metres.
+}
+
+/// The weld that a lane was recorded of: by this it is known again.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RecordedWeld {
+    /// Coordinate s of the lane at which it began, in metres.
+    pub start: f64,
+    /// Length of its taught path, in metres.
+    pub length: f64,
+    /// Travel speed, in m/s: up to it the lane keeps the bounds that it was made for.
+    pub speed: f64,
+}
+
+/// How another pass lies from the one that was recorded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pass {
+    /// To the left and up, in metres.
     pub shift: Offset,
+    /// Way from the weld's start over which the shift comes in, in metres.
+    pub lead: f64,
+}
+
+/// The greatest that a lane demands, along either axis: |c| in metres, |c′|, and |c‴| in 1/m².
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LanePeaks {
+    /// |c|, as bounded by the control points.
+    pub offset: f64,
+    /// |c′|.
+    pub slope: f64,
+    /// |c‴|.
+    pub third: f64,
+}
+
+impl Pass {
+    /// A shift that comes in aside by no more than one in two, and with no more than a jerk (m/s³) at a travel speed (m/s).
+    #[must_use]
+    pub fn new(shift: Offset, speed: f64, jerk: f64) -> Self {
+        let far = shift.norm();
+        // The greatest derivatives of the way in are 1.875/lead and 60/lead³ of it.
+        Self { shift, lead: (2.0 * 1.875 * far).max(speed * cbrt(60.0 * far / jerk)) }
+    }
+
+    /// The shift at a way from the weld's start.
+    fn at(&self, s: f64) -> LaneJet {
+        if s >= self.lead {
+            return LaneJet { offset: self.shift, ..LaneJet::TAUGHT };
+        }
+        let share = Taylor::smooth_step((s / self.lead).max(0.0), 1.0 / self.lead);
+        let derivatives = if s > 0.0 { share.derivatives() } else { [0.0; 3] };
+        LaneJet { offset: self.shift * share.value(), derivatives: derivatives.map(|d| self.shift * d) }
+    }
 }
 
 impl LaneRecord<'_> {
-    /// The recorded lane, shifted. Before its first and after its last knot it goes on at that point's offset.
-    /// Where nothing was recorded it is the taught path, shifted.
+    /// It goes up to the end of its weld: the torch came there.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        let known_to = (self.first + self.points.len() as i64 - 2) as f64 * self.spacing;
+        known_to >= self.weld.start + self.weld.length - SAME_PLACE
+    }
+
+    /// The recorded lane at a way from its weld's start. Before its first and after its last knot it goes on at that point's offset.
+    /// Where nothing was recorded it is the taught path.
     #[must_use]
     pub fn at(&self, s: f64) -> LaneJet {
         let last = self.points.len().saturating_sub(1) as i64;
         let point = |k: i64| {
             let held = usize::try_from((k - self.first).clamp(0, last)).unwrap_or(0);
-            self.points.get(held).map_or(Some(self.shift), |point| Some(point + self.shift))
+            Some(self.points.get(held).copied().unwrap_or_default())
         };
-        evaluate(self.spacing, s, point).unwrap_or(LaneJet::TAUGHT)
+        evaluate(self.spacing, self.weld.start + s, point).unwrap_or(LaneJet::TAUGHT)
+    }
+
+    /// The lane of another pass at a way from its weld's start: the recorded one, shifted.
+    #[must_use]
+    pub fn of_pass(&self, pass: &Pass, s: f64) -> LaneJet {
+        let (recorded, shift) = (self.at(s), pass.at(s));
+        LaneJet {
+            offset: recorded.offset + shift.offset,
+            derivatives: core::array::from_fn(|order| recorded.derivatives[order] + shift.derivatives[order]),
+        }
+    }
+
+    /// What the lane demands at most.
+    #[must_use]
+    pub fn peaks(&self) -> LanePeaks {
+        let mut peaks = LanePeaks { offset: 0.0, slope: 0.0, third: 0.0 };
+        let rise = |peak: &mut f64, vector: Offset, scale: f64| *peak = peak.max(vector.amax() / scale);
+        let spacing = self.spacing;
+        for (k, point) in self.points.iter().enumerate() {
+            let before = |back: usize| k.checked_sub(back).and_then(|at| self.points.get(at));
+            rise(&mut peaks.offset, *point, 1.0);
+            if let Some(d1) = before(1) {
+                rise(&mut peaks.slope, point - d1, spacing);
+            }
+            if let (Some(d1), Some(d2), Some(d3)) = (before(1), before(2), before(3)) {
+                rise(&mut peaks.third, point - d1 * 3.0 + d2 * 3.0 - d3, spacing * spacing * spacing);
+            }
+        }
+        peaks
     }
 }
 

@@ -13,6 +13,7 @@
 //! | `estimate` | where the seam is at a knot: seen, bridged, or guessed |
 //! | `mean` | the source's filter: the mean of the last readings |
 //! | `lane` | the correction c(s): a cubic B-spline, with its record |
+//! | `memory` | lanes of earlier passes, for passes over them |
 //! | `guard` | control points that keep slope, third derivative and bound, whatever is asked |
 //! | `fade` | the way from where the lane is to where the seam is |
 //! | `settings` | what the cell says, and whether the look-ahead suffices |
@@ -32,6 +33,7 @@ mod guard;
 mod lane;
 mod mean;
 mod measurement;
+mod memory;
 mod poses;
 mod regression;
 mod settings;
@@ -41,8 +43,9 @@ mod taught;
 mod tracker;
 
 pub use frame::{corrected, speed_factor};
-pub use lane::{Lane, LaneJet, LaneRecord};
+pub use lane::{Lane, LaneJet, LanePeaks, LaneRecord, Pass, RecordedWeld};
 pub use measurement::{Counts, Reading, Rejection, Sensor};
+pub use memory::{LaneKey, LaneMemory, MEMORY_POINTS, MEMORY_WELDS, MemoryFull};
 pub use poses::Instant;
 pub use settings::{Budget, Filter, LostLane, Settings, SettingsError};
 pub use source::{NoSensor, SeamSensor};

@@ -171,22 +171,12 @@ impl Weave {
     fn width_at(&self, s: f64) -> Taylor {
         let (begun, left, rate) = (s - self.from, self.to - s, 1.0 / self.ramp);
         let share = if begun < self.ramp {
-            smooth(begun * rate, rate)
+            Taylor::smooth_step(begun * rate, rate)
         } else if left < self.ramp {
-            smooth(left * rate, -rate)
+            Taylor::smooth_step(left * rate, -rate)
         } else {
             Taylor::constant(1.0)
         };
         share * self.width
     }
-}
-
-/// 10x³ − 15x⁴ + 6x⁵ at x, where x changes at this rate along the coordinate.
-fn smooth(x: f64, rate: f64) -> Taylor {
-    let rest = 1.0 - x;
-    let value = x * x * x * (10.0 + x * (6.0 * x - 15.0));
-    let d1 = 30.0 * x * x * rest * rest;
-    let d2 = 60.0 * x * rest * (1.0 - 2.0 * x);
-    let d3 = 60.0 * (1.0 - 6.0 * x * rest);
-    Taylor::from_derivatives(value, d1 * rate, d2 * rate * rate, d3 * rate * rate * rate)
 }

@@ -13,6 +13,7 @@ mod events;
 mod geometry;
 mod hostile;
 mod lost;
+mod memory;
 mod naive;
 mod paths;
 #[path = "../otg_support/random.rs"]

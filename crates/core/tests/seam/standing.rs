@@ -1,6 +1,8 @@
 //! Override, pause and backing up: the lane is a function of the way, and what is frozen stays.
 
-use seamline::seam::{LaneRecord, Offset, SeamTracker, Settings, TaughtPath, corrected, foot};
+use seamline::seam::{
+    LaneRecord, Offset, Pass, RecordedWeld, SeamTracker, Settings, TaughtPath, corrected, foot,
+};
 
 use crate::paths::{LENGTH, curve, line};
 use crate::random::Random;
@@ -65,20 +67,23 @@ fn assert_recorded(tracker: &SeamTracker, points: &[seamline::seam::ControlPoint
     let offsets: Vec<Offset> = points.iter().map(|point| point.offset).collect();
     let lane = tracker.lane();
     let (spacing, first) = (lane.spacing(), points[0].number);
-    let record = LaneRecord { spacing, first, points: &offsets, shift: Offset::zeros() };
-    let shift = Offset::new(2.0 * MM, 3.0 * MM);
-    let second = LaneRecord { shift, ..record };
+    let record = LaneRecord { spacing, first, weld: RecordedWeld::default(), points: &offsets };
+    let pass = Pass::new(Offset::new(2.0 * MM, 3.0 * MM), SPEED, 20.0);
+    assert!((10.0 * MM..15.0 * MM).contains(&pass.lead), "{}", pass.lead);
     let mut s = (first + 1) as f64 * spacing;
     while s < lane.known_to() {
         if let Some(jet) = lane.at(s) {
             assert_eq!(record.at(s), jet, "{s}");
-            let shifted = second.at(s);
-            assert!((shifted.offset - jet.offset - shift).norm() < 1e-15, "{s}");
-            assert!((shifted.derivatives[0] - jet.derivatives[0]).norm() < 1e-12, "{s}");
+            let shifted = record.of_pass(&pass, s);
+            assert!(s < pass.lead || (shifted.offset - jet.offset - pass.shift).norm() < 1e-15, "{s}");
+            assert!(s < pass.lead || (shifted.derivatives[0] - jet.derivatives[0]).norm() < 1e-12, "{s}");
         }
         s += 0.7 * MM;
     }
     assert_eq!(record.at(lane.known_to() + 1.0).derivatives, [Offset::zeros(); 3]);
+    let peaks = record.peaks();
+    let jerk = peaks.third * SPEED * SPEED * SPEED;
+    assert!(peaks.offset < 10.0 * MM && jerk < 20.0, "{peaks:?}");
 }
 
 /// Told the same again, a tracker freezes the same lane, bit for bit.

@@ -23,7 +23,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ("[robott]\nname = \"x\"\n", "cell.toml:1:2: robott: unknown key, did you mean robot?"),
     (
         "colour = \"red\"\n",
-        "cell.toml:1:1: colour: unknown key, expected one of robot, cartesian, tool, user_frame, job, arc_start, arc_end, weave, arc, sensor, flexible_mode, vibration, io, cycle, safety, drive, simulation",
+        "cell.toml:1:1: colour: unknown key, expected one of robot, cartesian, tool, user_frame, job, arc_start, arc_end, weave, pass, arc, sensor, flexible_mode, vibration, io, cycle, safety, drive, simulation",
     ),
     ("robot = 5\n", "cell.toml:1:9: robot: found 5, expected a table"),
     ("[[robot]]\nname = \"x\"\n", "cell.toml:1:1: robot: found [[robot]], expected a table"),
@@ -241,6 +241,10 @@ const MISTAKES: &[(&str, &str)] = &[
     (
         "[[weave]]\nnumber = 1\npattern = \"zigzag\"\n",
         "cell.toml:3:11: weave[1].pattern: found \"zigzag\", expected \"sine\", \"triangle\", \"figure_eight\" or \"circular\"",
+    ),
+    (
+        "[[pass]]\nnumber = 2\nlateral_mm = 60\n",
+        "cell.toml:3:14: pass[2].lateral_mm: found 60, expected a number from -50 to 50",
     ),
     (
         "[[weave]]\nnumber = 1\nwavelength_mm = 0\n",

@@ -1,8 +1,8 @@
 //! The cell file as a whole: the default, what is laid over it, other robots, and files with mistakes.
 
-use seamline::geometry::Vector3;
-
 use seamline::arc::ArcVoltage;
+use seamline::geometry::Vector3;
+use seamline::seam::Offset;
 
 use super::*;
 
@@ -171,6 +171,10 @@ fn one_of_two_alternatives_replaces_the_other() {
 #[test]
 fn an_empty_list_drops_the_defaults_tables() {
     assert!(parse("weave = []\n").weaves.is_empty());
+    let cell = parse("[[pass]]\nnumber = 2\nof = 1\nheight_mm = 3.0\n");
+    let (second, third) = (cell.pass(2), cell.pass(3));
+    assert_eq!((second.of, second.shift, second.file), (1, Offset::new(0.0, 0.003), None));
+    assert_eq!((third.of, third.shift), (3, Offset::zeros()));
 }
 
 #[test]
@@ -297,7 +301,7 @@ fn the_examples_in_the_comments_are_right() {
         }
     }
     // The first example has a blank line in it and counts as two.
-    assert_eq!(examples, 10);
+    assert_eq!(examples, 11);
 }
 
 #[test]

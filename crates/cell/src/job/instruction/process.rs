@@ -129,4 +129,13 @@ pub enum Weld {
     TrackOn(Vec<String>),
     /// COMARCOF.
     TrackOff,
+    /// `MEMON REC MPF#(n)`, `MEMON PLY MPF#(n)`.
+    MemoryOn {
+        /// It is recorded; otherwise played.
+        record: bool,
+        /// `MPF#(n)`.
+        file: Box<Expression>,
+    },
+    /// MEMOF.
+    MemoryOff,
 }

@@ -98,6 +98,11 @@ impl Interpreter {
             Weld::WeaveOff => Action::WeaveOff,
             Weld::TrackOn(_) => Action::TrackOn,
             Weld::TrackOff => Action::TrackOff,
+            Weld::MemoryOn { record, file } => {
+                let file = self.natural(file, "the file's number", MAX_NUMBER, world)?;
+                Action::MemoryOn { record: *record, file }
+            }
+            Weld::MemoryOff => Action::MemoryOff,
         };
         Ok(action.into())
     }

@@ -59,6 +59,8 @@ pub(super) const INSTRUCTIONS: &[&str] = &[
     "IMOV",
     "INC",
     "JUMP",
+    "MEMOF",
+    "MEMON",
     "MOVC",
     "MOVJ",
     "MOVL",

@@ -23,6 +23,11 @@ pub(super) fn instruction(lexer: &mut Lexer<'_>, word: &str) -> Parsed<Option<In
             lexer.rest();
             Weld::TrackOff
         }
+        "MEMON" => memory_on(lexer)?,
+        "MEMOF" => {
+            lexer.rest();
+            Weld::MemoryOff
+        }
         _ => return Ok(None),
     };
     Ok(Some(Instruction::Weld(weld)))
@@ -86,6 +91,22 @@ fn weave_tags(lexer: &mut Lexer<'_>) -> Parsed<WeaveTags> {
 fn track_tags(lexer: &mut Lexer<'_>) -> Vec<String> {
     let rest = lexer.rest();
     printable(rest).split_whitespace().map(str::to_owned).collect()
+}
+
+fn memory_on(lexer: &mut Lexer<'_>) -> Parsed<Weld> {
+    let record = match lexer.peek().kind {
+        TokenKind::Word("REC") => true,
+        TokenKind::Word("PLY") => false,
+        _ => return Err(lexer.unexpected("REC or PLY")),
+    };
+    lexer.next();
+    if lexer.peek().kind != TokenKind::Word("MPF") {
+        return Err(lexer.unexpected("MPF#(n)"));
+    }
+    lexer.next();
+    let file = operand::hash_expression(lexer)?;
+    operand::check_range(&file, "the file's number", 1.0, 9999.0)?;
+    Ok(Weld::MemoryOn { record, file: Box::new(file) })
 }
 
 fn tag(lexer: &mut Lexer<'_>, what: &'static str, min: f64, max: f64) -> Parsed<Expression> {
