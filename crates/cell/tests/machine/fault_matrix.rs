@@ -258,7 +258,7 @@ fn run(setting: &Setting, wrongs: &[Wrong], random: &mut Random) -> Option<Fault
     let mut run = Run { setting, machine, script, stop, cycles: 0, rows: Vec::new() };
     run.ask(Event::Enable);
     run.ask(Event::Start);
-    let mut named = None;
+    let (mut named, mut powerless) = (None, false);
     // Two faults may come one after the other; each ends by itself once it is cleared.
     for _ in 0..4 {
         let rest = run.until_rest();
@@ -272,7 +272,11 @@ fn run(setting: &Setting, wrongs: &[Wrong], random: &mut Random) -> Option<Fault
             assert!(off < 1e-6 || wrongs.len() > 1, "a stop on the path: {off} m");
             return named;
         };
-        assert!(wrongs.iter().any(|wrong| wrong.causes(&fault)), "{fault:?}");
+        // After a time without power the arm is taken to stand where its encoders say.
+        let jumped = powerless && wrongs.contains(&Wrong::Scripted(FaultKind::EncoderJump));
+        let outside = jumped && matches!(fault, Fault::Workspace { .. } | Fault::PositionLimit { .. });
+        assert!(outside || wrongs.iter().any(|wrong| wrong.causes(&fault)), "{wrongs:?}: {fault:?}");
+        powerless |= fault.category() == StopCategory::Category0;
         named = named.or(Some(fault));
         if fault.category() == StopCategory::Category2 && wrongs.len() == 1 && named == Some(fault) {
             assert!(setting.track.off(&last) < 1e-6, "a stop on the path: {} m", setting.track.off(&last));
@@ -343,11 +347,16 @@ fn two_faults_at_once_are_borne() {
     pairs(0..100);
 }
 
-/// 20 kinds, 1,000 seeds each, and 1,000 pairs:
-/// `cargo test --release -p seamline-cell --test machine a_thousand_faults -- --ignored --nocapture`.
+/// 20 kinds, 1,000 seeds each: `cargo test --release -p seamline-cell --test machine a_thousand_faults -- --ignored --nocapture`.
 #[test]
-#[ignore = "takes an hour"]
+#[ignore = "takes half an hour"]
 fn a_thousand_faults_of_each_kind() {
     singles(0..1_000);
+}
+
+/// 1,000 pairs: `cargo test --release -p seamline-cell --test machine a_thousand_pairs -- --ignored --nocapture`.
+#[test]
+#[ignore = "takes minutes"]
+fn a_thousand_pairs_of_faults() {
     pairs(0..1_000);
 }
