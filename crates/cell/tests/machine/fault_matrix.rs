@@ -285,7 +285,8 @@ fn run(setting: &Setting, wrongs: &[Wrong], random: &mut Random) -> Option<Fault
             let output = run.ask(event);
             assert_eq!((output.status.mode, output.command.position), (Mode::Fault, last), "{event:?}");
         }
-        if wrongs.iter().any(|wrong| wrong.lasts()) {
+        // There the controller stays until it is started anew.
+        if outside || wrongs.iter().any(|wrong| wrong.lasts()) {
             return named;
         }
         run.script.clear(&mut run.machine);
