@@ -332,6 +332,7 @@ fn programs_of_every_kind_run_to_their_end() {
         [1100.0, 60.0, -300.0, 0.0],
         [1080.0, 130.0, -300.0, 0.0],
         [1040.0, 180.0, -300.0, 0.0],
+        [1100.0, 60.0, -299.0, 0.0],
     ];
     let (first, second) = ("MOVL C00002 V=40.0 PL=0\n", "MOVL C00003 V=40.0 PL=0\n");
     for program in [
@@ -344,6 +345,8 @@ fn programs_of_every_kind_run_to_their_end() {
         "COMARCON\nMOVL C00002 V=40.0 CR=2.0\nDOUT OT#(1) ON\nMOVL C00003 V=20.0\nTIMER T=0.20\nMOVL C00004 V=60.0\nMOVL C00005 V=60.0\n\
          COMARCOF\n".into(),
         "COMARCON\nMOVS C00001 V=40.0\nMOVS C00002 V=40.0\nMOVS C00003 V=40.0\nMOVS C00004 V=40.0\nMOVS C00005 V=40.0\nCOMARCOF\n".into(),
+        // Moves behind it that are over before the way off the seam could fade.
+        format!("COMARCON\n{first}{second}COMARCOF\nTIMER T=0.20\nMOVL C00006 V=100.0 PL=0\nTIMER T=0.20\nMOVL C00003 V=100.0 PL=0\nMOVJ C00000 VJ=100.00\n"),
         format!("WVON WEV#(1)\nCOMARCON\n{first}WVOF\n{second}COMARCOF\nMOVJ C00000 VJ=100.00\nCOMARCON\nMOVJ C00001 VJ=100.00\nCOMARCOF\n"),
     ] {
         let whole = format!("MOVJ C00000 VJ=20.00\nMOVL C00001 V=100.0 PL=0\n{program}");

@@ -35,7 +35,8 @@ pub(crate) struct Arguments {
     #[arg(long)]
     dry_run: bool,
     /// Something that goes wrong, as KIND@SECONDS, or KIND@SECONDS:JOINT for what is one joint's; any number of them. Kinds: drive-silent,
-    /// drive-alarm, joint-stuck, encoder-jump, encoder-nan, emergency-stop, late-cycles, planner-silent, no-ignition, arc-loss.
+    /// drive-alarm, joint-stuck, encoder-jump, encoder-nan, emergency-stop, late-cycles, planner-silent, no-ignition, arc-loss, sensor-silent,
+    /// sensor-nan, sensor-jump.
     #[arg(long = "fault", value_name = "KIND@TIME", value_parser = fault)]
     faults: Vec<ScriptedFault>,
 }

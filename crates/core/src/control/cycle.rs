@@ -2,10 +2,11 @@
 
 use super::arc::{Arc, ArcRules};
 use super::feedback::{Observer, ServoModel};
+use super::instant::joints_of;
 use super::mode::{Event, Mode};
 use super::off_path::OffPath;
 use super::prefilter::{ActsOn, CommandPrefilter, PrefilterEntry, Progress};
-use super::program::{Arm, CommandSource, Follows, Program, joints_of};
+use super::program::{Arm, CommandSource, Follows, Program};
 use super::rails::{OnRails, RAIL_MOVES};
 use super::rate::RateLimits;
 use super::resume::Resume;

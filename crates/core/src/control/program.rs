@@ -1,25 +1,21 @@
 //! Tier 2: where the program stands, and how far programme time goes on in this cycle.
 
-use super::block::{Block, Command, Motion};
+use super::block::{Block, Command};
 use super::history::{Done, History};
+use super::instant::{At, along_path, joint_motion, joints_on, way_on};
 use super::lookahead::{AlongPath, JointMotion, Lookahead};
 use super::rails::{OnRails, Rails};
 use super::rate::{Rate, RateLimits};
-use super::seam::{Corrections, Fade, Playing, SeamGuide, SeamStatus, Tracking, shown_rate};
+use super::seam::{Fade, SeamGuide};
 use super::trail::{Mark, Way};
-use crate::geometry::{Pose, PoseJet};
+use crate::geometry::Pose;
 use crate::kinematics::{JointJet, Kinematics};
-use crate::path::{Measure, PathState};
 use crate::safety::Fault;
-use crate::seam::{Instant, SeamSensor};
 
 /// Commands held between the queue and the motion.
 const PENDING: usize = 32;
 /// Samples by which the look-ahead may grow in one cycle; one is used up.
 const SAMPLES_PER_CYCLE: usize = 3;
-
-/// Samples of the look-ahead by which a rate lags its goal where that changes steadily.
-const LEAD: f64 = 1.5;
 
 /// Where the cycle takes its commands from: a queue that a planner fills.
 pub trait CommandSource<const N: usize> {
@@ -57,9 +53,9 @@ pub(super) struct Program<const N: usize> {
     place: Place,
     pub(super) guide: SeamGuide,
     /// What the joints still are beside the planned motion after a seam was tracked.
-    fade: Option<Fade<N>>,
+    pub(super) fade: Option<Fade<N>>,
     /// The share of full speed that was last asked for.
-    speed: f64,
+    pub(super) speed: f64,
 }
 
 /// What the program has reached.
@@ -355,134 +351,6 @@ impl<const N: usize> Program<N> {
         self.way().tool - self.arc_way
     }
 
-    pub(super) fn corrections(&self) -> Corrections<'_, N> {
-        Corrections { seam: self.guide.correction(), fade: self.fade.as_ref() }
-    }
-
-    /// What takes the joints off the paths at a programme time, after a seam was tracked.
-    pub(super) fn aside(&self, time: f64) -> Option<JointJet<N>> {
-        let fade = self.fade.as_ref()?;
-        let mut jet = JointJet::at_rest([0.0; N]);
-        fade.add(&mut jet, time);
-        Some(jet)
-    }
-
-    /// The rate at which a share of full speed is kept: on a tracked seam the torch's own speed along it counts.
-    fn goal(&self, speed: f64, limits: Option<&RateLimits<N>>) -> f64 {
-        let Some((start, block)) = self.under_way(self.now) else { return speed };
-        // The rate is there after the look-ahead's next sample.
-        let lead = LEAD * self.ahead.spacing() * self.rate.value();
-        let full = self.full_rate(block, self.now + lead - start);
-        let bearable = match limits {
-            Some(limits) if full < 1.0 => self.ahead.bearable(limits),
-            _ => 1.0,
-        };
-        (speed * full).min(bearable)
-    }
-
-    fn full_rate(&self, block: &Block<N>, since: f64) -> f64 {
-        let fading = self.fade.as_ref().map_or(1.0, |fade| fade.rate(self.now));
-        self.guide.rate(block, since).min(fading)
-    }
-
-    /// The share of full speed at which the program goes on.
-    pub(super) fn shown_rate(&self) -> f64 {
-        let full =
-            self.under_way(self.now).map_or(1.0, |(start, block)| self.full_rate(block, self.now - start));
-        if full < 1.0 { shown_rate(self.rate.value(), full, self.speed) } else { self.rate.value() }
-    }
-
-    /// The seam sensor is asked, with the measured tool centre point at the start of the cycle.
-    pub(super) fn sense(&mut self, time: f64, measured: Pose, sensor: &mut impl SeamSensor) {
-        let s = self.weld_coordinate();
-        self.guide.sense(&Instant { time, s, base_from_tcp: measured }, sensor);
-    }
-
-    /// Coordinate of the weld at which the program stands.
-    fn weld_coordinate(&self) -> f64 {
-        let tracked = |block: &Block<N>, since: f64| match &block.motion {
-            Motion::Path(motion) => motion.tracked.map(|on| on.start + motion.state(since).position),
-            Motion::Joint(_) => None,
-        };
-        let here = self.under_way(self.now).and_then(|(start, block)| tracked(block, self.now - start));
-        let behind = || self.done.at(self.now).and_then(|done| tracked(&done.block, done.block.duration()));
-        here.or_else(behind).unwrap_or(self.guide.coordinate())
-    }
-
-    /// What is to be told of the tracking.
-    pub(super) fn seam_status(&self) -> Option<SeamStatus> {
-        self.guide.status(self.weld_coordinate(), self.is_on_seam())
-    }
-
-    /// Whether a tracked move is under way.
-    pub(super) fn is_on_seam(&self) -> bool {
-        self.under_way(self.now).is_some_and(
-            |(_, block)| matches!(&block.motion, Motion::Path(motion) if motion.tracked.is_some()),
-        )
-    }
-
-    /// Tracking begins where the arm stands. What lies behind is forgotten with the lane that led there.
-    fn track<K: Kinematics<N>>(
-        &mut self,
-        tracking: &Tracking,
-        kinematics: &K,
-        limits: &RateLimits<N>,
-    ) -> Result<(), Fault> {
-        let tcp = kinematics.forward(&self.position) * tracking.flange_from_tcp;
-        let seam = self.guide.begin(tracking, &tcp.translation.vector);
-        self.enter_seam(&seam, &tracking.flange_from_tcp, kinematics, limits)
-    }
-
-    /// A pass begins where the arm stands.
-    fn play<K: Kinematics<N>>(
-        &mut self,
-        playing: &Playing,
-        kinematics: &K,
-        limits: &RateLimits<N>,
-    ) -> Result<(), Fault> {
-        let seam = self.guide.play(playing)?;
-        self.enter_seam(&seam, &playing.flange_from_tcp, kinematics, limits)
-    }
-
-    /// From where the arm stands on to the corrected path.
-    fn enter_seam<K: Kinematics<N>>(
-        &mut self,
-        seam: &PoseJet,
-        flange_from_tcp: &Pose,
-        kinematics: &K,
-        limits: &RateLimits<N>,
-    ) -> Result<(), Fault> {
-        let flange = seam.attached(&flange_from_tcp.inverse());
-        let planned = joints_of(&flange, &self.position, kinematics)?.position;
-        self.done = History::new();
-        self.fade_from(&planned, limits);
-        Ok(())
-    }
-
-    /// From the corrected path on to moves as they are planned.
-    fn leave_seam<K: Kinematics<N>>(&mut self, kinematics: &K, limits: &RateLimits<N>) -> Result<(), Fault> {
-        self.guide.end();
-        if let Some(done) = self.done.at(self.now) {
-            let at = At { block: &done.block, start: done.start, since: done.block.duration() };
-            let none = Corrections { seam: None, fade: None };
-            let planned = joints_on(&at, &self.position, &none, kinematics)?.position;
-            if self.fade.is_some_and(|fade| fade.rate(self.now) < 1.0) {
-                // Only one difference can be gone back through.
-                self.done = History::new();
-            }
-            self.fade_from(&planned, limits);
-        }
-        Ok(())
-    }
-
-    /// The arm stands beside the plan: what is between fades out on the way from here.
-    fn fade_from(&mut self, planned: &[f64; N], limits: &RateLimits<N>) {
-        let difference = core::array::from_fn(|axis| self.position[axis] - planned[axis]);
-        self.fade = Fade::new(difference, self.now, limits);
-        self.ahead.forget_after(self.now);
-        self.ahead_position = self.position;
-    }
-
     /// Says where the program is, among the moves done.
     pub(super) fn find_place(&mut self) {
         if let Some((_, block)) = self.under_way(self.now) {
@@ -565,6 +433,7 @@ impl<const N: usize> Program<N> {
                 (block.line, block.segment, block.flange_from_tcp, block.starts_at_rest);
             self.set_place(line, segment, tool);
             if from_rest && self.now >= self.move_start {
+                self.begin_to_fade();
                 self.rate = Rate::constant(self.goal(goal, None));
             }
         }
@@ -583,6 +452,19 @@ impl<const N: usize> Program<N> {
                 self.enter_head(goal);
             }
         }
+    }
+
+    /// Programme time from the first pending move to where the arm next comes to rest, as far as it is known.
+    pub(super) fn time_to_rest(&self) -> f64 {
+        let mut time = 0.0;
+        for k in 0..self.count {
+            let Command::Move(block) = self.nth(k) else { continue };
+            time += block.duration();
+            if block.ends_at_rest {
+                break;
+            }
+        }
+        time
     }
 
     /// Programme time at which the last pending move ends.
@@ -638,83 +520,4 @@ impl<const N: usize> Program<N> {
         }
         Ok((rests && self.count < PENDING).then_some(JointMotion::REST))
     }
-}
-
-/// An instant of a block.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct At<'a, const N: usize> {
-    pub(super) block: &'a Block<N>,
-    /// Programme time at which the block begins, and time since then.
-    pub(super) start: f64,
-    pub(super) since: f64,
-}
-
-/// The joints' motion and position at an instant of a block.
-pub(super) fn joint_motion<const N: usize, K: Kinematics<N>>(
-    at: &At<'_, N>,
-    seed: &[f64; N],
-    corrections: &Corrections<'_, N>,
-    kinematics: &K,
-) -> Result<(JointMotion<N>, [f64; N]), Fault> {
-    let JointJet { position, velocity, acceleration, jerk } = joints_on(at, seed, corrections, kinematics)?;
-    let path = along_path(at.block, at.since);
-    Ok((JointMotion { velocity, acceleration, jerk, path }, position))
-}
-
-/// The path covered at a time since a block's start.
-fn way_on<const N: usize>(block: &Block<N>, time: f64) -> Way {
-    match &block.motion {
-        Motion::Joint(_) => Way { path: time, tool: 0.0 },
-        Motion::Path(motion) => {
-            let path = motion.state(time).position - motion.state(0.0).position;
-            let tool = if motion.path.measure() == Measure::Length { path } else { 0.0 };
-            Way { path, tool }
-        }
-    }
-}
-
-/// The tool's motion along its path at a time since a block's start.
-pub(super) fn along_path<const N: usize>(block: &Block<N>, time: f64) -> AlongPath {
-    match &block.motion {
-        Motion::Joint(_) => AlongPath::NONE,
-        Motion::Path(motion) => {
-            let PathState { velocity, acceleration, jerk, .. } = motion.state(time);
-            let (acceleration_limit, jerk_limit) = (motion.acceleration, motion.jerk);
-            AlongPath { velocity, acceleration, jerk, acceleration_limit, jerk_limit }
-        }
-    }
-}
-
-/// The joints at an instant of a block, in programme time, on the branch nearest to `seed`; with what takes them off the planned motion.
-fn joints_on<const N: usize, K: Kinematics<N>>(
-    at: &At<'_, N>,
-    seed: &[f64; N],
-    corrections: &Corrections<'_, N>,
-    kinematics: &K,
-) -> Result<JointJet<N>, Fault> {
-    let mut jet = match &at.block.motion {
-        Motion::Joint(motion) => {
-            let state = motion.at_time(at.since);
-            let (position, velocity) = (state.position, state.velocity);
-            JointJet { position, velocity, acceleration: state.acceleration, jerk: state.jerk }
-        }
-        Motion::Path(motion) => joints_of(&motion.flange_on(at.since, corrections.seam), seed, kinematics)?,
-    };
-    if let Some(fade) = corrections.fade {
-        fade.add(&mut jet, at.start + at.since);
-    }
-    Ok(jet)
-}
-
-/// The joints where the flange moves like this, on the branch nearest to `seed`.
-pub(super) fn joints_of<const N: usize, K: Kinematics<N>>(
-    flange: &PoseJet,
-    seed: &[f64; N],
-    kinematics: &K,
-) -> Result<JointJet<N>, Fault> {
-    let inverse = || {
-        let q = kinematics.inverse_nearest(&flange.pose, seed)?;
-        kinematics.joint_jet(flange, &q)
-    };
-    inverse().map_err(|_| Fault::NoInverse { position: flange.pose.translation.vector })
 }

@@ -1,7 +1,8 @@
 //! Programme time run backward: the arm goes back over the moves that are done.
 
+use super::instant::{At, along_path, joint_motion};
 use super::lookahead::{AlongPath, JointMotion, Lookahead};
-use super::program::{Arm, At, Follows, Program, along_path, joint_motion};
+use super::program::{Arm, Follows, Program};
 use super::rate::{Rate, RateLimits};
 use crate::kinematics::Kinematics;
 use crate::safety::Fault;

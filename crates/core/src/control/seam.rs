@@ -121,7 +121,10 @@ pub(super) struct Corrections<'a, const N: usize> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Fade<const N: usize> {
     difference: [f64; N],
-    start: f64,
+    /// From here on the arm stands beside the plan.
+    from: f64,
+    /// Where the fade begins: with the first moves from rest that take as long. Until then the difference stays.
+    start: Option<f64>,
     duration: f64,
 }
 
@@ -350,8 +353,8 @@ impl PathMotion {
 }
 
 impl<const N: usize> Fade<N> {
-    /// A difference that fades from a programme time on, so slowly that it takes its share of the limits. `None` where there is none.
-    pub(super) fn new(difference: [f64; N], start: f64, limits: &RateLimits<N>) -> Option<Self> {
+    /// A difference from a programme time on, that will fade so slowly that it takes its share of the limits. `None` where there is none.
+    pub(super) fn new(difference: [f64; N], from: f64, limits: &RateLimits<N>) -> Option<Self> {
         if difference.iter().all(|q| q.abs() <= SAME) {
             return None;
         }
@@ -364,20 +367,35 @@ impl<const N: usize> Fade<N> {
             slow.max(gentle).max(cbrt(q * j / jerk[axis]))
         };
         let duration = (0..N).map(time).fold(FADE_LEAST, f64::max);
-        Some(Self { difference, start, duration })
+        Some(Self { difference, from, start: None, duration })
+    }
+
+    /// Moves begin from rest, and take so long to the next: the fade begins with them if it ends before they do. True if it does.
+    pub(super) fn begin(&mut self, time: f64, to_rest: f64) -> bool {
+        let begins = self.start.is_none() && to_rest >= self.duration;
+        if begins {
+            self.start = Some(time);
+        }
+        begins
+    }
+
+    /// Nothing is left of it at a time.
+    pub(super) fn is_over(&self, time: f64) -> bool {
+        self.start.is_some_and(|start| time >= start + self.duration)
     }
 
     /// The greatest rate of programme time at a time.
     pub(super) fn rate(&self, time: f64) -> f64 {
-        if time >= self.start && time < self.start + self.duration { FADE_RATE } else { 1.0 }
+        let fades = self.start.is_some_and(|start| time >= start) && !self.is_over(time);
+        if fades { FADE_RATE } else { 1.0 }
     }
 
     /// Adds what is left of the difference at a programme time.
     pub(super) fn add(&self, jet: &mut JointJet<N>, time: f64) {
-        let x = (time - self.start) / self.duration;
-        if !(0.0..1.0).contains(&x) {
+        if time < self.from || self.is_over(time) {
             return;
         }
+        let x = self.start.map_or(0.0, |start| ((time - start) / self.duration).max(0.0));
         let y = 1.0 - x;
         let rate = 1.0 / self.duration;
         let left = 1.0 - x * x * x * (10.0 + x * (6.0 * x - 15.0));
