@@ -3,10 +3,14 @@
 //!
 //! What is left out would itself be such a motion, with a stop at the point. So the generator always finds one that takes no longer, within
 //! the same limits. The more is left out, the more time is saved, and the farther from the point the tool passes.
+//!
+//! Behind prefilters the tool is where a mean of that motion is. So it is that which is held against the permitted error, by the stages of the
+//! cycle themselves. A move alone is straight in the joints, and a mean of it lies on it.
 
 use seamline::control::TrajectoryMotion;
 use seamline::geometry::{Pose, Vector3};
 use seamline::otg::{Input, Limits, Profile, Trajectory, calculate};
+use seamline::vibration::{Kernel, PrefilterStage, StageEntry, stage_entries};
 
 use super::arm::PlanningArm;
 use super::corner::NOTHING_PERMITTED;
@@ -14,6 +18,7 @@ use super::joint_move::JointMove;
 use super::planner::Planner;
 use super::run::Stops;
 use super::workspace;
+use crate::cell::Vibration;
 
 /// Of either move a corner leaves out at most this many times what the joints speed up or slow down in, and at most half of it.
 const RAMPS: f64 = 2.0;
@@ -25,11 +30,13 @@ const SHORTER: f64 = 0.8;
 const HALVINGS: u32 = 5;
 /// A corner may give up these shares of the time that it could save, and then comes nearer to the point. The least that will do counts.
 const GIVEN_UP: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 0.9];
-/// A corner that could save less than this share of what it leaves out is a stop but in name.
+/// A corner that could save less than this share of what it takes the place of is a stop but in name.
 const WORTHWHILE: f64 = 0.01;
 /// Instants at which the tool is looked at: on each of the pieces left out, and on the way that takes their place.
 const LEFT_OUT: u32 = 32;
 const INSTEAD: u32 = 48;
+/// Instants of each taught piece, and of what is in prefilters with it.
+const SEEN: u32 = 256;
 /// What the tool may be off between these instants, as a share of the error that is permitted.
 const BETWEEN: f64 = 0.01;
 /// A joint that is slower than this share of its limit stands still.
@@ -45,16 +52,23 @@ pub(super) struct JointCorner<const N: usize> {
     pub(super) trajectory: Trajectory<N>,
     /// What it leaves out at the first move's end and at the second one's beginning, in seconds.
     pub(super) left_out: [f64; 2],
+    /// How long a stop waits until all has come out of the prefilters, in seconds.
+    run_out: f64,
 }
 
 impl<const N: usize> JointCorner<N> {
     /// How much sooner the second move ends than after a stop, in seconds.
     fn saves(&self) -> f64 {
-        self.left_out[0] + self.left_out[1] - self.trajectory.duration()
+        self.with_stop() - self.trajectory.duration()
+    }
+
+    /// How long the same would take with a stop, in seconds.
+    fn with_stop(&self) -> f64 {
+        self.left_out[0] + self.left_out[1] + self.run_out
     }
 
     fn is_worthwhile(&self) -> bool {
-        self.saves() > WORTHWHILE * (self.left_out[0] + self.left_out[1])
+        self.saves() > WORTHWHILE * self.with_stop()
     }
 }
 
@@ -62,7 +76,8 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
     /// A corner between two joint moves. It leaves out as much as the permitted error allows, which is that of the tool's distance from the
     /// point between them, and of its distance from the way that it would take with a stop.
     ///
-    /// Cost: mostly 10 to 30 corners looked at, and 149 at most, each with one or two calls of the generator and 115 of forward kinematics.
+    /// Cost: mostly 10 to 30 corners looked at, and 149 at most, each with one or two calls of the generator and 115 of forward kinematics;
+    /// behind a prefilter a thousand, and as many cycles of it.
     ///
     /// # Errors
     /// Why the robot must stop between.
@@ -75,13 +90,15 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         if before.tool != after.tool {
             return Err(Stops("the next move has another tool"));
         }
-        if self.run.smear.is_some() {
-            return Err(Stops("joint moves are not rounded under a prefilter"));
-        }
+        let run_out = self.run_out();
         let [first, second] = [before, after].map(|of| of.motion.trajectory());
         let [[_, slowing], [speeding, _]] = [ramps(first), ramps(second)];
         let most = [(slowing, first), (speeding, second)];
-        let most = most.map(|(ramp, of)| (RAMPS * ramp).min(HALF * of.duration()));
+        // Between two corners as much is left as is in the prefilters at once: none sees both.
+        let most = most.map(|(ramp, of)| (RAMPS * ramp).min(HALF * (of.duration() - run_out)));
+        if most.iter().any(|most| *most <= 0.0) {
+            return Err(Stops("a move is shorter than what is in the prefilter at once"));
+        }
         let longest = most[0].max(most[1]);
         let corner = |length: f64, given_up: f64| {
             self.corner_of([before, after], most.map(|most| most.min(length)), given_up, permitted)
@@ -118,7 +135,8 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let leave = before.motion.duration() - left_out[0];
         let [first, second] = [before.motion.at_time(leave), after.motion.at_time(left_out[1])];
         let mut input = Input::new(first.state(), second.state(), wider(&before.limits, &after.limits));
-        let mut corner = JointCorner { trajectory: calculate(&input).ok()?, left_out };
+        let trajectory = calculate(&input).ok()?;
+        let mut corner = JointCorner { trajectory, left_out, run_out: self.run_out() };
         if given_up > 0.0 && corner.is_worthwhile() {
             input.duration_min = Some(corner.trajectory.duration() + given_up * corner.saves());
             corner.trajectory = calculate(&input).ok()?;
@@ -134,10 +152,27 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         let tool = &before.tool.flange_from_tcp;
         workspace::check_joint_move(&corner.trajectory, &self.arm.kinematics, tool, &self.cell.safety)
             .ok()?;
-        let taught =
-            [before.motion.part(leave, before.motion.duration()), after.motion.part(0.0, left_out[1])];
-        let error = self.corner_error(tool, &taught, &TrajectoryMotion::whole(corner.trajectory));
+        let error = self.tool_error([before, after], &corner)?;
         (error <= (1.0 - BETWEEN) * permitted).then_some(corner)
+    }
+
+    /// How far a corner takes the tool off: as it is, and behind prefilters. The slower time runs, the nearer is the one to the other.
+    fn tool_error(&self, [before, after]: [&JointMove<N>; 2], corner: &JointCorner<N>) -> Option<f64> {
+        let tool = &before.tool.flange_from_tcp;
+        let (first, second) = (&before.motion, &after.motion);
+        let (leave, join) = (first.duration() - corner.left_out[0], corner.left_out[1]);
+        let taught = |more: f64| {
+            let end = (join + more).min(second.duration());
+            [first.part((leave - more).max(0.0), first.duration()), second.part(0.0, end)]
+        };
+        let instead = TrajectoryMotion::whole(corner.trajectory);
+        let at = |k: u32| instead.at_time(instead.duration() * f64::from(k) / f64::from(INSTEAD)).position;
+        let bare = self.corner_error(tool, &taught(0.0), LEFT_OUT, (0..=INSTEAD).map(at));
+        let Some(smear) = self.run.smear else { return Some(bare) };
+        let from = (leave - smear.length).max(0.0);
+        let passed = [first.part(from, leave), instead, second.part(join, second.duration())];
+        let joints = shaped(&self.cell.vibration, self.cell.cycle.period, &passed)?;
+        Some(bare.max(self.corner_error(tool, &taught(smear.length), SEEN, joints.into_iter())))
     }
 
     /// The greater of two distances: of the point from the tool's way, and of a place on it from the way that it takes the place of.
@@ -145,22 +180,51 @@ impl<const N: usize, K: PlanningArm<N>> Planner<'_, N, K> {
         &self,
         flange_from_tcp: &Pose,
         taught: &[TrajectoryMotion<N>; 2],
-        instead: &TrajectoryMotion<N>,
+        places: u32,
+        instead: impl Iterator<Item = [f64; N]>,
     ) -> f64 {
-        let tool = |motion: &TrajectoryMotion<N>, k: u32, of: u32| {
-            let joints = motion.at_time(motion.duration() * f64::from(k) / f64::from(of)).position;
-            (self.arm.kinematics.forward(&joints) * flange_from_tcp).translation.vector
+        let tool =
+            |joints: [f64; N]| (self.arm.kinematics.forward(&joints) * flange_from_tcp).translation.vector;
+        let of = |motion: &TrajectoryMotion<N>| -> Vec<Vector3> {
+            let at = |k: u32| motion.at_time(motion.duration() * f64::from(k) / f64::from(places)).position;
+            (0..=places).map(|k| tool(at(k))).collect()
         };
-        let places = |motion: &TrajectoryMotion<N>, of: u32| -> Vec<Vector3> {
-            (0..=of).map(|k| tool(motion, k, of)).collect()
-        };
-        let mut old = places(&taught[0], LEFT_OUT);
+        let mut old = of(&taught[0]);
         let corner = old.last().copied().unwrap_or_default();
-        old.extend(places(&taught[1], LEFT_OUT));
-        let new = places(instead, INSTEAD);
+        old.extend(of(&taught[1]));
+        let new: Vec<Vector3> = instead.map(tool).collect();
         let off = new.iter().map(|place| distance(place, &old)).fold(0.0, f64::max);
         off.max(distance(&corner, &new))
     }
+}
+
+/// The joints behind prefilters from the beginning of the second of three motions, one after the other, until all of it has come out; what
+/// lies before the first is rest. Nothing where a kernel does not suit the period.
+fn shaped<const N: usize>(
+    vibration: &Vibration,
+    period: f64,
+    motions: &[TrajectoryMotion<N>; 3],
+) -> Option<Vec<[f64; N]>> {
+    let start = motions[0].at_time(0.0).position;
+    let stage = |kernel: &Kernel| {
+        let memory = vec![StageEntry::ZERO; stage_entries(kernel, period)];
+        PrefilterStage::try_new(memory, kernel, period, &start).ok()
+    };
+    let mut stages = vibration.kernels().iter().map(stage).collect::<Option<Vec<_>>>()?;
+    let length: f64 = vibration.kernels().iter().map(Kernel::length).sum();
+    let [before, instead, _] = motions.each_ref().map(TrajectoryMotion::duration);
+    let at = |time: f64| match time {
+        time if time < 0.0 => motions[0].at_time(before + time),
+        time if time < instead => motions[1].at_time(time),
+        time => motions[2].at_time(time - instead),
+    };
+    let cycles = |time: f64| (time / period).ceil() as i32;
+    let mut came = |cycle: i32| {
+        let joints = at(f64::from(cycle) * period).position;
+        stages.iter_mut().fold(joints, |joints, stage| stage.update(&joints))
+    };
+    let all = (-cycles(before)..=cycles(instead + length)).map(|cycle| (cycle, came(cycle)));
+    Some(all.filter(|(cycle, _)| *cycle >= 0).map(|(_, joints)| joints).collect())
 }
 
 /// The distance of a point from places joined by straight lines.
