@@ -9,7 +9,7 @@ use seamline::safety::Fault;
 use seamline_cell::cell::Cell;
 use seamline_cell::job::{MovePath, Speed};
 use seamline_cell::plan::{Arm, Planner};
-use seamline_cell::sim::InjectedFault;
+use seamline_cell::sim::{InjectedFault, SimulatedDrive};
 
 const START: [f64; 6] = [0.0, 0.2, -0.2, 0.1, -1.2, 0.3];
 const END: [f64; 6] = [0.35, 0.35, -0.1, 0.3, -1.0, 0.1];
@@ -180,6 +180,40 @@ fn silent_drives_and_alarms_are_category_zero() {
         let reset = run.cycle();
         assert_eq!((reset.status.fault, reset.status.mode), (None, Mode::Holding), "the job can go on");
     }
+}
+
+/// Without power the arm is moved by hand to where the tool is outside the workspace: after the reset it may stand there, comes back, and the job is done.
+#[test]
+fn an_arm_that_was_moved_out_of_the_workspace_comes_back() {
+    let (mut cell, arm) = setup();
+    let mut whole = Run::start(&cell, &arm);
+    let done = whole.until(|output| output.status.mode == Mode::Standstill);
+    let least = |outputs: &[CycleOutput<6>]| {
+        let y = outputs.iter().map(|output| output.status.base_from_tcp.translation.y);
+        y.fold(f64::INFINITY, f64::min)
+    };
+    cell.safety.workspace_min.y = least(&whole.outputs) - 0.01;
+    let mut run = Run::start(&cell, &arm);
+    run.run_into_line(200);
+    run.bench.drive.inject(InjectedFault::Silent).unwrap();
+    run.cycle();
+    let mut moved = run.cycle().command.position;
+    moved[0] -= 0.3;
+    let mut elsewhere = cell.clone();
+    elsewhere.robot.joints.iter_mut().zip(moved).for_each(|(joint, home)| joint.home = home);
+    run.bench.input.measured = Ok(moved);
+    run.cycle();
+    run.bench.drive = SimulatedDrive::from_cell(&elsewhere).unwrap();
+    run.bench.input.measured = Ok(moved);
+    run.bench.input.event = Some(Event::Reset);
+    for _ in 0..50 {
+        let output = run.cycle();
+        assert_eq!((output.status.mode, output.status.fault), (Mode::Holding, None));
+    }
+    assert!(run.cycle().status.base_from_tcp.translation.y < cell.safety.workspace_min.y - 0.1);
+    run.bench.input.event = Some(Event::Resume);
+    let end = run.until(|output| output.status.mode == Mode::Standstill || output.status.fault.is_some());
+    assert_eq!((end.status.fault, end.command.position), (None, done.command.position));
 }
 
 /// A queue that runs empty in the middle of a motion: each joint stops within its own limits, and power goes.

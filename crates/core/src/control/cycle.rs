@@ -407,7 +407,12 @@ where
         let judged = wanted.and_then(|command| {
             let tcp = self.kinematics.forward(&command.position) * self.program.place().flange_from_tcp;
             // A stop is the last resort.
-            let judged = self.envelope.judge(&command.position, &tcp.translation.vector);
+            let last = || {
+                let tcp =
+                    self.kinematics.forward(self.envelope.last()) * self.program.place().flange_from_tcp;
+                tcp.translation.vector
+            };
+            let judged = self.envelope.judge(&command.position, &tcp.translation.vector, last);
             if stops { Ok((command, tcp)) } else { judged.map(|()| (command, tcp)) }
         });
         match judged {

@@ -71,16 +71,26 @@ impl<const N: usize> Envelope<N> {
         self.history = [position, self.history[0], self.history[1]];
     }
 
-    /// Judges the next command with its tool centre point (base frame).
+    /// Judges the next command with its tool centre point (base frame); `last` gives that of the last accepted command, where it is needed.
     ///
     /// # Errors
     /// The first [`Fault`] found; the command must then not be sent.
-    pub fn judge(&self, position: &[f64; N], tcp: &Vector3) -> Result<(), Fault> {
+    pub fn judge(
+        &self,
+        position: &[f64; N],
+        tcp: &Vector3,
+        last: impl FnOnce() -> Vector3,
+    ) -> Result<(), Fault> {
         for (axis, value) in position.iter().enumerate() {
             self.judge_axis(axis, *value)?;
         }
-        let inside = |k: usize| tcp[k] >= self.workspace.low[k] && tcp[k] <= self.workspace.high[k];
-        if (0..3).all(inside) { Ok(()) } else { Err(Fault::Workspace { position: *tcp }) }
+        let beyond = |at: &Vector3| (at - self.workspace.high).sup(&(self.workspace.low - at));
+        let outside = beyond(tcp);
+        let inside = |k: usize| outside[k] <= 0.0;
+        // Where it stands outside, having been moved there without power, it may stay and move back.
+        let nearer = |before: &Vector3| (0..3).all(|k| inside(k) || outside[k] <= before[k]);
+        let permitted = (0..3).all(inside) || nearer(&beyond(&last()));
+        if permitted { Ok(()) } else { Err(Fault::Workspace { position: *tcp }) }
     }
 
     fn judge_axis(&self, axis: usize, value: f64) -> Result<(), Fault> {
@@ -142,7 +152,7 @@ mod tests {
     #[test]
     fn each_limit_is_found_and_named() {
         let tcp = Vector3::zeros();
-        let judge = |envelope: Envelope<1>, q: f64| envelope.judge(&[q], &tcp);
+        let judge = |envelope: Envelope<1>, q: f64| envelope.judge(&[q], &tcp, Vector3::zeros);
         assert_eq!(judge(steady(2.0, 0.5), 0.502), Ok(()));
         assert!(matches!(judge(steady(2.0, 0.5), 0.502_01), Err(Fault::VelocityLimit { axis: 0, .. })));
         assert!(matches!(judge(steady(1.0, 0.5), 0.501 + 1.1e-5), Err(Fault::AccelerationLimit { .. })));
@@ -152,7 +162,14 @@ mod tests {
         assert_eq!(judge(steady(-1.0, 1.2), 1.199), Ok(()), "back into the range");
         assert_eq!(judge(steady(0.0, 0.0), f64::NAN), Err(Fault::NotFinite { axis: 0 }));
         let outside = Vector3::new(0.0, 2.1, 0.0);
-        assert!(matches!(steady(0.0, 0.0).judge(&[0.0], &outside), Err(Fault::Workspace { .. })));
-        assert!(steady(0.0, 0.0).judge(&[0.0], &Vector3::new(f64::NAN, 0.0, 0.0)).is_err());
+        let from = |tcp: Vector3, last: Vector3| steady(0.0, 0.0).judge(&[0.0], &tcp, || last);
+        assert!(matches!(from(outside, Vector3::zeros()), Err(Fault::Workspace { .. })));
+        assert!(from(outside, Vector3::new(0.0, 2.09, 0.0)).is_err(), "farther out");
+        assert!(from(Vector3::new(-2.1, 2.05, 0.0), outside).is_err(), "out on another side");
+        assert_eq!(from(outside, outside), Ok(()), "where it stands");
+        assert_eq!(from(Vector3::new(1.0, 2.09, 0.0), outside), Ok(()), "back into the box");
+        let nowhere = Vector3::new(f64::NAN, 0.0, 0.0);
+        assert!(from(nowhere, Vector3::zeros()).is_err() && from(nowhere, nowhere).is_err());
+        assert!(from(outside, nowhere).is_err());
     }
 }
