@@ -356,3 +356,45 @@ fn programs_of_every_kind_run_to_their_end() {
         run.assert_within_limits(&weld);
     }
 }
+
+/// Behind each prefilter on the feedrate the arm leaves the seam, on a line and on an arc, by up to 7 mm to the next move: within the limits, also with a
+/// pause, a way back for a random time and on again around the place where it leaves, and to the same end.
+#[test]
+fn a_seam_is_left_behind_every_prefilter_on_the_feedrate() {
+    let (mut random, mut backed) = (Random(12), 0);
+    let names = ["zv", "zvd", "fir", "fir-zv", "fir-zvd", "mzv", "ei", "2hump-ei", "3hump-ei"];
+    for (k, prefilter) in names.into_iter().enumerate() {
+        let vibration = format!(
+            "[vibration]\nprefilter = \"{prefilter}\"\non = \"feedrate\"\n[[flexible_mode]]\nnumber = 1\nfrequency_hz = 9.0\n\
+             damping = 0.02\n"
+        );
+        let taught = [Taught::Line, Taught::Arc][k % 2];
+        let weld = Weld::new(taught, 50.0, cell(3, &vibration));
+        let mut whole = Run::new(&weld);
+        whole.finish();
+        whole.assert_within_limits(&weld);
+        let leaves = whole.seam.iter().rposition(Option::is_some).unwrap() as f64;
+        for _ in 0..4 {
+            let mut run = Run::new(&weld);
+            (0..random.within(leaves - 300.0, leaves + 700.0) as usize).for_each(|_| {
+                run.cycle();
+            });
+            run.machine.request(Event::Hold);
+            run.until(|output| output.status.at_rest);
+            let rest = run.joints.len() - 1;
+            run.machine.request(Event::BackUp);
+            for _ in 0..(random.within(50.0, 1_500.0) as usize) {
+                assert_eq!(run.cycle().status.fault, None);
+            }
+            run.machine.request(Event::Hold);
+            run.until(|output| output.status.at_rest);
+            let back = run.joints.len() - 1;
+            backed += usize::from((run.tool(back) - run.tool(rest)).norm() > 2.0 * MM);
+            run.machine.request(Event::Resume);
+            run.finish();
+            run.assert_within_limits(&weld);
+            assert_eq!(run.joints.last(), whole.joints.last(), "{prefilter}");
+        }
+    }
+    assert!(backed >= 12, "{backed}");
+}

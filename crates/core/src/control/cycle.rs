@@ -448,9 +448,8 @@ where
                 let JointJet { position, velocity, acceleration, .. } =
                     joints_of(&flange, &self.command.position, &self.kinematics)?;
                 let mut command = JointCommand { position, velocity, acceleration };
-                let [time, rate, slope] = shaped.time;
-                if let Some(aside) = self.program.aside(time) {
-                    add(&mut command, &in_time(&aside, (rate, slope)));
+                if let Some(aside) = self.program.aside(shaped.course[0], shaped.gone) {
+                    add(&mut command, &aside);
                 }
                 Ok(command)
             }
@@ -462,8 +461,8 @@ where
     fn progress(&self) -> Progress {
         let (course, since) = self.program.course();
         let (mark, rate) = (self.program.place().mark, self.program.shown_rate());
-        let time = [self.program.now, self.program.time_rate().0, self.program.time_rate().1];
-        Progress { mark, since, course, tool_way: self.program.way().tool, rate, time }
+        let gone = self.program.gone();
+        Progress { mark, since, course, tool_way: self.program.way().tool, rate, gone }
     }
 
     /// Events that the motion itself causes.

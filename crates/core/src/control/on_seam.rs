@@ -6,8 +6,9 @@ use super::instant::{At, joints_of, joints_on};
 use super::program::Program;
 use super::rate::RateLimits;
 use super::seam::{Corrections, Fade, Playing, SeamStatus, Tracking, shown_rate};
+use crate::drive::JointCommand;
 use crate::geometry::{Pose, PoseJet};
-use crate::kinematics::{JointJet, Kinematics};
+use crate::kinematics::Kinematics;
 use crate::safety::Fault;
 use crate::seam::{Instant, SeamSensor};
 
@@ -19,12 +20,21 @@ impl<const N: usize> Program<N> {
         Corrections { seam: self.guide.correction(), fade: self.fade.as_ref() }
     }
 
-    /// What takes the joints off the paths at a programme time, after a seam was tracked.
-    pub(super) fn aside(&self, time: f64) -> Option<JointJet<N>> {
-        let fade = self.fade.as_ref()?;
-        let mut jet = JointJet::at_rest([0.0; N]);
-        fade.add(&mut jet, time);
-        Some(jet)
+    /// How many differences have faded, with the share of the last one, by real time. Prefilters on the feedrate hold it back like the way: what
+    /// is a mean of it is within the joints' limits, whatever the rate does in between.
+    pub(super) fn gone(&self) -> [f64; 3] {
+        let Some(fade) = &self.fade else { return [self.faded, 0.0, 0.0] };
+        let (gone, (rate, slope)) = (fade.gone(self.now), self.time_rate());
+        let [d1, d2, _] = gone.derivatives();
+        [self.faded + gone.value(), d1 * rate, d2 * rate * rate + d1 * slope]
+    }
+
+    /// What takes the joints off the paths after a seam was tracked, at a place of the course that has come out of the prefilters with
+    /// [`Program::gone`]. Behind the place where the difference came about it counts, and before it not.
+    pub(super) fn aside(&self, course: f64, [gone, rate, slope]: [f64; 3]) -> Option<JointCommand<N>> {
+        let way = if self.backward.is_some() { -course } else { course };
+        let fade = self.fade.as_ref().filter(|_| way >= self.fades_from)?;
+        Some(fade.left([gone - self.faded, rate, slope]))
     }
 
     /// The rate at which a share of full speed is kept: on a tracked seam the torch's own speed along it counts.
@@ -142,6 +152,7 @@ impl<const N: usize> Program<N> {
     /// The arm stands beside the plan: what is between fades out on the way from here.
     fn fade_from(&mut self, planned: &[f64; N], limits: &RateLimits<N>) {
         let difference = core::array::from_fn(|axis| self.position[axis] - planned[axis]);
+        (self.faded, self.fades_from) = (self.gone()[0], self.way_before.path);
         self.fade = Fade::new(difference, self.now, limits);
         self.look_anew();
     }

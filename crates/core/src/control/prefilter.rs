@@ -24,8 +24,8 @@ pub struct CommandSignal<const N: usize> {
     tool_way: f64,
     /// Rate of programme time that is told.
     rate: f64,
-    /// Programme time, its rate and the rate's derivative.
-    time: [f64; 3],
+    /// What has gone of differences that fade, with two derivatives.
+    gone: [f64; 3],
 }
 
 impl<const N: usize> Signal for CommandSignal<N> {
@@ -36,7 +36,7 @@ impl<const N: usize> Signal for CommandSignal<N> {
         course: [0.0; 3],
         tool_way: 0.0,
         rate: 0.0,
-        time: [0.0; 3],
+        gone: [0.0; 3],
     };
 
     #[inline]
@@ -47,7 +47,7 @@ impl<const N: usize> Signal for CommandSignal<N> {
         self.course.add(share, &other.course);
         self.tool_way += share * other.tool_way;
         self.rate += share * other.rate;
-        self.time.add(share, &other.time);
+        self.gone.add(share, &other.gone);
     }
 }
 
@@ -83,9 +83,9 @@ pub enum ActsOn {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shaped<const N: usize> {
     pub(super) command: JointCommand<N>,
-    /// How far the course has come, and programme time, with their first two derivatives.
+    /// How far the course has come, and what has gone of differences that fade, with their first two derivatives.
     pub(super) course: [f64; 3],
-    pub(super) time: [f64; 3],
+    pub(super) gone: [f64; 3],
     /// The place of the program that the arm has come to, the way of the tool up to there, and the rate at which it goes on.
     pub(super) mark: Mark,
     pub(super) tool_way: f64,
@@ -101,8 +101,8 @@ pub(super) struct Progress {
     pub(super) course: [f64; 3],
     pub(super) tool_way: f64,
     pub(super) rate: f64,
-    /// Programme time, its rate and the rate's derivative.
-    pub(super) time: [f64; 3],
+    /// What has gone of differences that fade, with two derivatives ([`super::program::Program::gone`]).
+    pub(super) gone: [f64; 3],
 }
 
 impl<const N: usize, M> CommandPrefilter<N, M> {
@@ -151,26 +151,26 @@ impl<const N: usize, M: AsRef<[PrefilterEntry<N>]> + AsMut<[PrefilterEntry<N>]>>
 
     /// At rest at a position, where the program is.
     pub(super) fn reset(&mut self, position: [f64; N], progress: &Progress) {
-        let Progress { mark, course, tool_way, rate, time, .. } = *progress;
-        let [course, time] = [course, time].map(|of| [of[0], 0.0, 0.0]);
-        let signal = CommandSignal { position, course, tool_way, rate, time, ..CommandSignal::ZERO };
+        let Progress { mark, course, tool_way, rate, gone, .. } = *progress;
+        let [course, gone] = [course, gone].map(|of| [of[0], 0.0, 0.0]);
+        let signal = CommandSignal { position, course, tool_way, rate, gone, ..CommandSignal::ZERO };
         self.stages.iter_mut().flatten().for_each(|stage| stage.reset(&signal));
         self.trail.reset(mark);
     }
 
     /// One cycle.
     pub(super) fn update(&mut self, command: &JointCommand<N>, progress: &Progress) -> Shaped<N> {
-        let Progress { mark, since, course, tool_way, rate, time } = *progress;
+        let Progress { mark, since, course, tool_way, rate, gone } = *progress;
         if self.is_none() {
-            return Shaped { command: *command, course, time, mark, tool_way, rate };
+            return Shaped { command: *command, course, gone, mark, tool_way, rate };
         }
         let JointCommand { position, velocity, acceleration } = *command;
-        let mut signal = CommandSignal { position, velocity, acceleration, course, tool_way, rate, time };
+        let mut signal = CommandSignal { position, velocity, acceleration, course, tool_way, rate, gone };
         for stage in self.stages.iter_mut().flatten() {
             signal = stage.update(&signal);
         }
-        let CommandSignal { position, velocity, acceleration, course, tool_way, rate, time } = signal;
+        let CommandSignal { position, velocity, acceleration, course, tool_way, rate, gone } = signal;
         let command = JointCommand { position, velocity, acceleration };
-        Shaped { command, course, time, mark: self.trail.pass(mark, since, course[0]), tool_way, rate }
+        Shaped { command, course, gone, mark: self.trail.pass(mark, since, course[0]), tool_way, rate }
     }
 }

@@ -33,7 +33,7 @@ pub(super) struct Program<const N: usize> {
     pub(super) now: f64,
     pub(super) move_start: f64,
     /// Path covered before the first pending move.
-    way_before: Way,
+    pub(super) way_before: Way,
     /// A move has come to its end at rest, and the arm has yet to come to it.
     pub(super) arriving: bool,
     pub(super) done: History<N>,
@@ -54,6 +54,10 @@ pub(super) struct Program<const N: usize> {
     pub(super) guide: SeamGuide,
     /// What the joints still are beside the planned motion after a seam was tracked.
     pub(super) fade: Option<Fade<N>>,
+    /// Differences that faded before it, as a number: with the share of it that has gone it changes in motion only.
+    pub(super) faded: f64,
+    /// Where on the way it begins.
+    pub(super) fades_from: f64,
     /// The share of full speed that was last asked for.
     pub(super) speed: f64,
 }
@@ -108,6 +112,8 @@ impl<const N: usize> Program<N> {
             place,
             guide: SeamGuide::new(),
             fade: None,
+            faded: 0.0,
+            fades_from: 0.0,
             speed: 0.0,
         }
     }
@@ -135,10 +141,13 @@ impl<const N: usize> Program<N> {
             place,
             guide,
             fade,
+            faded,
+            fades_from,
             speed,
         } = self;
         (*first, *count, *arriving, *backward, *dwell_left) = (0, 0, false, None, None);
         (*now, *move_start, *arc_way, *speed) = (0.0, 0.0, 0.0, 0.0);
+        (*faded, *fades_from) = (0.0, 0.0);
         (*way_before, *done, *rails, *fade) = (Way::default(), History::new(), Rails::new(), None);
         (*rate, *ahead) = (Rate::constant(0.0), Lookahead::new(ahead.spacing()));
         (*here, *ahead_position) = (position, position);

@@ -6,9 +6,11 @@
 
 use super::block::{Block, Motion, PathMotion};
 use super::rate::RateLimits;
+use crate::drive::JointCommand;
 use crate::geometry::{Pose, PoseJet, Vector3};
 use crate::kinematics::JointJet;
 use crate::math::float::cbrt;
+use crate::math::taylor::Taylor;
 use crate::path::{Path, PathState, SeamFrame};
 use crate::safety::Fault;
 use crate::seam::{
@@ -390,24 +392,35 @@ impl<const N: usize> Fade<N> {
         if fades { FADE_RATE } else { 1.0 }
     }
 
+    /// The share of the difference that has gone at a programme time: 0 before, 1 afterwards.
+    pub(super) fn gone(&self, time: f64) -> Taylor {
+        let x = self.start.map_or(0.0, |start| (time - start) / self.duration);
+        if x > 0.0 && x < 1.0 {
+            Taylor::smooth_step(x, 1.0 / self.duration)
+        } else {
+            Taylor::constant(if x >= 1.0 { 1.0 } else { 0.0 })
+        }
+    }
+
     /// Adds what is left of the difference at a programme time.
     pub(super) fn add(&self, jet: &mut JointJet<N>, time: f64) {
         if time < self.from || self.is_over(time) {
             return;
         }
-        let x = self.start.map_or(0.0, |start| ((time - start) / self.duration).max(0.0));
-        let y = 1.0 - x;
-        let rate = 1.0 / self.duration;
-        let left = 1.0 - x * x * x * (10.0 + x * (6.0 * x - 15.0));
-        let d1 = -30.0 * x * x * y * y * rate;
-        let d2 = -60.0 * x * y * (1.0 - 2.0 * x) * rate * rate;
-        let d3 = -60.0 * (1.0 - 6.0 * x * y) * rate * rate * rate;
+        let gone = self.gone(time);
+        let [d1, d2, d3] = gone.derivatives();
         for (axis, q) in self.difference.iter().enumerate() {
-            jet.position[axis] += q * left;
-            jet.velocity[axis] += q * d1;
-            jet.acceleration[axis] += q * d2;
-            jet.jerk[axis] += q * d3;
+            jet.position[axis] += q * (1.0 - gone.value());
+            jet.velocity[axis] -= q * d1;
+            jet.acceleration[axis] -= q * d2;
+            jet.jerk[axis] -= q * d3;
         }
+    }
+
+    /// What is left of the difference when so much has gone, with its first two derivatives.
+    pub(super) fn left(&self, [gone, rate, slope]: [f64; 3]) -> JointCommand<N> {
+        let times = |share: f64| self.difference.map(|q| q * share);
+        JointCommand { position: times(1.0 - gone), velocity: times(-rate), acceleration: times(-slope) }
     }
 }
 
