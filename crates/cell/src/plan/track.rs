@@ -120,6 +120,8 @@ impl<const N: usize> Section<N> {
             let record = means.record(RecordedWeld { start: from, length, speed: settings.speed });
             let tracking = Tracking { settings, start: from, flange_from_tcp, stop_after, record };
             commands.push(playing.map_or(Command::TrackOn(tracking), Command::PlayOn));
+        } else if block.starts_at_rest {
+            commands.push(Command::TrackOver);
         }
         weld.begun = true;
         self.on = Some((number, known));

@@ -175,6 +175,13 @@ impl Weld {
         Self::with(taught, &taught.job(mm_s, "ARCON ASF#(1)\n", "ARCOF AEF#(1)\n"), cell)
     }
 
+    /// A job, or `None` where it is refused.
+    pub(crate) fn where_possible(taught: Taught, job: &str, cell: Cell) -> Option<Self> {
+        let arm: Ar2010 = Arm::from_cell(&cell).unwrap();
+        let parts = planned(&cell, &arm, &steps(job)).ok()?;
+        Some(Self { taught, commands: commands(&parts), cell, arm })
+    }
+
     /// Why a job is refused.
     pub(crate) fn refused(job: &str, cell: &Cell) -> String {
         let arm: Ar2010 = Arm::from_cell(cell).unwrap();

@@ -398,3 +398,100 @@ fn a_seam_is_left_behind_every_prefilter_on_the_feedrate() {
     }
     assert!(backed >= 12, "{backed}");
 }
+
+/// A random program: moves of several kinds between points about the seam, with stops, weaves, the arc and tracking switched on and off anywhere.
+fn random_program(random: &mut Random) -> String {
+    let mut points = vec![[1100.0, -100.0, -250.0, 0.0], [1100.0, -100.0, -300.0, 0.0]];
+    let mut program = String::from("MOVJ C00000 VJ=20.00\nMOVL C00001 V=100.0 PL=0\n");
+    let (mut heading, mut lit, mut woven) = (90.0_f64, false, false);
+    for _ in 0..10 {
+        let [x, y, ..] = points[points.len() - 1];
+        heading += if random.unit() < 0.3 { random.within(-120.0, 120.0) } else { random.within(-6.0, 6.0) };
+        let length = if random.unit() < 0.3 { random.within(0.3, 6.0) } else { random.within(10.0, 80.0) };
+        let (sin, cos) = heading.to_radians().sin_cos();
+        let (x, y) = ((x + length * cos).clamp(950.0, 1250.0), (y + length * sin).clamp(-250.0, 250.0));
+        points.push([x, y, -300.0, 0.0]);
+        let (number, mm_s) = (points.len() - 1, random.within(8.0, 60.0));
+        match (random.unit() * 9.0) as u32 {
+            0 | 1 => program += "COMARCON\n",
+            2 => program += "COMARCOF\n",
+            3 => program += "TIMER T=0.10\n",
+            4 => {
+                program += if lit { "ARCOF AEF#(1)\n" } else { "ARCON ASF#(1)\n" };
+                lit = !lit;
+            }
+            5 => {
+                program += if woven { "WVOF\n" } else { "WVON WEV#(1)\n" };
+                woven = !woven;
+            }
+            _ => {}
+        }
+        program += &match (random.unit() * 8.0) as u32 {
+            0 if !lit => format!("MOVJ C{number:05} VJ={:.2}\n", random.within(5.0, 100.0)),
+            1 | 2 => format!("MOVL C{number:05} V={mm_s:.1} PL=0\n"),
+            _ => format!("MOVL C{number:05} V={mm_s:.1}\n"),
+        };
+    }
+    job(&points, &program)
+}
+
+/// Random programs with random pauses, back-ups and overrides: no fault, all limits kept, the end reached.
+fn random_programs(seeds: std::ops::Range<u64>) {
+    let (mut run_whole, mut tracked) = (0, 0);
+    for seed in seeds {
+        let mut random = Random(seed);
+        let text = random_program(&mut random);
+        let more =
+            "[sensor]\nlost_seam = \"taught_path\"\n[arc]\nlock_override = false\nrefuse_slowdown = false\n";
+        let Some(weld) = Weld::where_possible(Taught::Line, &text, cell(seed as u32, more)) else { continue };
+        let mut run = Run::new(&weld);
+        let mut events = Random(seed + 7);
+        let mut end = None;
+        for cycle in 0..150_000 {
+            let output = run.cycle();
+            assert_eq!(output.status.fault, None, "{seed}\n{text}");
+            // In the end nobody interferes any more.
+            if cycle > 60_000 {
+                run.machine.set_override(1.0);
+            }
+            let mode = output.status.mode;
+            match mode {
+                Mode::Standstill => {
+                    end = Some(());
+                    break;
+                }
+                Mode::Running if cycle < 60_000 && events.unit() < 5e-4 => run.machine.request(Event::Hold),
+                Mode::Running if cycle < 60_000 && events.unit() < 5e-4 => {
+                    run.machine.set_override(events.within(0.1, 1.0))
+                }
+                Mode::Holding if output.status.at_rest && events.unit() < 0.01 => {
+                    run.machine.request(if cycle < 60_000 && events.unit() < 0.4 {
+                        Event::BackUp
+                    } else {
+                        Event::Resume
+                    });
+                }
+                Mode::Backing if events.unit() < 2e-3 => run.machine.request(Event::Hold),
+                _ => {}
+            }
+        }
+        assert!(end.is_some(), "{seed} does not end\n{text}");
+        run.assert_within_limits(&weld);
+        run_whole += 1;
+        tracked += usize::from(run.seam.iter().flatten().count() > 1_000);
+    }
+    println!("{run_whole} programs, {tracked} with a tracked seam");
+    assert!(run_whole > 0 && tracked > 0);
+}
+
+#[test]
+fn random_programs_run_to_their_end() {
+    random_programs(0..12);
+}
+
+/// The same with 400 seeds.
+#[test]
+#[ignore = "takes minutes"]
+fn many_random_programs_run_to_their_end() {
+    random_programs(100..500);
+}

@@ -47,6 +47,8 @@ pub enum Command<const N: usize> {
     TrackOn(Tracking),
     /// A pass is welded from the record of an earlier one from here on. The arm is at rest.
     PlayOn(Playing),
+    /// The tracked weld goes on with the next move, where the taught path may bend a little. The arm is at rest.
+    TrackOver,
     /// The seam is tracked, or the record played, no longer. The arm is at rest.
     TrackOff,
     /// A place in the program that the status reports when it is passed. Numbers rise.

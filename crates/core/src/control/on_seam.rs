@@ -1,6 +1,6 @@
 //! What a tracked seam makes of the program: its rate, its joints, and the way back to the plan.
 
-use super::block::{Block, Motion};
+use super::block::{Block, Command, Motion};
 use super::history::History;
 use super::instant::{At, joints_of, joints_on};
 use super::program::Program;
@@ -114,7 +114,7 @@ impl<const N: usize> Program<N> {
         self.enter_seam(&seam, &playing.flange_from_tcp, kinematics, limits)
     }
 
-    /// From where the arm stands on to the corrected path.
+    /// From where the arm stands on to the corrected path of another weld.
     fn enter_seam<K: Kinematics<N>>(
         &mut self,
         seam: &PoseJet,
@@ -129,6 +129,22 @@ impl<const N: usize> Program<N> {
         Ok(())
     }
 
+    /// From where the arm stands on to the next move of the weld: where the taught path bends, the same correction leads elsewhere. False where
+    /// that move has yet to come.
+    pub(super) fn join_move<K: Kinematics<N>>(
+        &mut self,
+        kinematics: &K,
+        limits: &RateLimits<N>,
+    ) -> Result<bool, Fault> {
+        let next = (self.count > 1).then(|| self.nth(1));
+        let Some(Command::Move(block)) = next else { return Ok(false) };
+        let at = At { block, start: self.move_start, since: 0.0 };
+        let corrections = Corrections { fade: None, ..self.corrections() };
+        let planned = joints_on(&at, &self.position, &corrections, kinematics)?.position;
+        self.fade_from(&planned, limits);
+        Ok(true)
+    }
+
     /// From the corrected path on to moves as they are planned.
     pub(super) fn leave_seam<K: Kinematics<N>>(
         &mut self,
@@ -140,10 +156,6 @@ impl<const N: usize> Program<N> {
             let at = At { block: &done.block, start: done.start, since: done.block.duration() };
             let none = Corrections { seam: None, fade: None };
             let planned = joints_on(&at, &self.position, &none, kinematics)?.position;
-            if self.fade.is_some_and(|fade| !fade.is_over(self.now)) {
-                // Only one difference can be gone back through.
-                self.done = History::new();
-            }
             self.fade_from(&planned, limits);
         }
         Ok(())
@@ -152,8 +164,15 @@ impl<const N: usize> Program<N> {
     /// The arm stands beside the plan: what is between fades out on the way from here.
     fn fade_from(&mut self, planned: &[f64; N], limits: &RateLimits<N>) {
         let difference = core::array::from_fn(|axis| self.position[axis] - planned[axis]);
-        (self.faded, self.fades_from) = (self.gone()[0], self.way_before.path);
-        self.fade = Fade::new(difference, self.now, limits);
+        let fade = Fade::new(difference, self.now, limits);
+        // What has faded stays for the way back, where nothing takes its place: only one difference can be gone back through.
+        if fade.is_some() || self.fade.is_some_and(|fade| !fade.is_over(self.now)) {
+            (self.faded, self.fades_from) = (self.gone()[0], self.way_before.path);
+            if self.fade.is_some() {
+                self.done = History::new();
+            }
+            self.fade = fade;
+        }
         self.look_anew();
     }
 

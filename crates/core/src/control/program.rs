@@ -28,7 +28,7 @@ pub trait CommandSource<const N: usize> {
 pub(super) struct Program<const N: usize> {
     pending: [Command<N>; PENDING],
     first: usize,
-    count: usize,
+    pub(super) count: usize,
     /// Programme time now, and when the first pending move begins. The motion is in the moves done while it is before that.
     pub(super) now: f64,
     pub(super) move_start: f64,
@@ -282,6 +282,11 @@ impl<const N: usize> Program<N> {
                 let playing = *playing;
                 self.play(&playing, kinematics, limits)?;
             }
+            Some(Command::TrackOver) => {
+                if !self.join_move(kinematics, limits)? {
+                    return Ok(false);
+                }
+            }
             Some(Command::TrackOff) => self.leave_seam(kinematics, limits)?,
             Some(Command::End) => {
                 self.place.ended = true;
@@ -425,7 +430,7 @@ impl<const N: usize> Program<N> {
         matches!(next, Some(Command::Move(_)))
     }
 
-    fn nth(&self, k: usize) -> &Command<N> {
+    pub(super) fn nth(&self, k: usize) -> &Command<N> {
         &self.pending[(self.first + k) % PENDING]
     }
 

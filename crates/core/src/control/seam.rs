@@ -34,6 +34,8 @@ const FADE_SHARES: [f64; 3] = [0.24, 0.42, 0.56];
 const FADE_LEAST: f64 = 0.1;
 /// Greatest derivatives of 10x³ − 15x⁴ + 6x⁵.
 const FADE_PEAKS: [f64; 3] = [1.875, 5.774, 60.0];
+/// Rounding of programme time, which is put together from a move's start and the time since then; in seconds.
+const ROUNDING: f64 = 1e-10;
 /// A difference of the joints up to this is none, in radians or metres.
 const SAME: f64 = 1e-9;
 /// What is travelled is told as what was asked for if it differs by less than this share: beyond, the rate is changing.
@@ -203,7 +205,7 @@ impl SeamGuide {
             let _ = self.memory.open(*key, tracker.lane(), weld);
         }
         (self.tracking, self.playing, self.on, self.s) = (Some(*tracking), None, true, tracking.start);
-        correct(&jet, self.correction(), tracking.start)
+        self.motion_at(tracking.start)
     }
 
     /// A pass begins: gives the motion of the corrected path there.
@@ -217,7 +219,12 @@ impl SeamGuide {
         }
         (self.tracker, self.tracking, self.playing) = (None, None, Some(*playing));
         (self.on, self.s) = (true, playing.start);
-        Ok(correct(&self.taught.jet(playing.start), self.correction(), playing.start))
+        Ok(self.motion_at(playing.start))
+    }
+
+    /// The motion of the corrected path at a coordinate of the taught path ahead.
+    pub(super) fn motion_at(&self, s: f64) -> PoseJet {
+        correct(&self.taught.jet(s), self.correction(), s)
     }
 
     /// Readings are taken no longer; the lane stays for the way back.
@@ -404,7 +411,7 @@ impl<const N: usize> Fade<N> {
 
     /// Adds what is left of the difference at a programme time.
     pub(super) fn add(&self, jet: &mut JointJet<N>, time: f64) {
-        if time < self.from || self.is_over(time) {
+        if time < self.from - ROUNDING || self.is_over(time) {
             return;
         }
         let gone = self.gone(time);
