@@ -30,6 +30,10 @@ const LANE_END: f64 = 0.02;
 const FADE_RATE: f64 = 0.75;
 /// ... of velocity, acceleration and jerk to the difference.
 const FADE_SHARES: [f64; 3] = [0.24, 0.42, 0.56];
+/// The same for a difference that is small enough to fade within a time, in seconds: on a tracked seam time does not run faster anyway.
+const GENTLE_RATE: f64 = 0.99;
+const GENTLE_SHARES: [f64; 3] = [0.008, 0.015, 0.025];
+const GENTLE_LONGEST: f64 = 0.3;
 /// Shortest fade, in seconds.
 const FADE_LEAST: f64 = 0.1;
 /// Greatest derivatives of 10x³ − 15x⁴ + 6x⁵.
@@ -130,6 +134,8 @@ pub(super) struct Fade<const N: usize> {
     /// Where the fade begins: with the first moves from rest that take as long. Until then the difference stays.
     start: Option<f64>,
     duration: f64,
+    /// The greatest rate of programme time meanwhile.
+    rate: f64,
 }
 
 /// The tracker with the taught path ahead of the torch.
@@ -367,16 +373,13 @@ impl<const N: usize> Fade<N> {
         if difference.iter().all(|q| q.abs() <= SAME) {
             return None;
         }
-        let [v, a, j] = [0, 1, 2].map(|order| FADE_PEAKS[order] / FADE_SHARES[order]);
-        let time = |axis: usize| {
-            let q = difference[axis].abs();
-            let RateLimits { velocity, acceleration, jerk } = limits;
-            let slow = q * v / velocity[axis];
-            let gentle = crate::math::float::sqrt(q * a / acceleration[axis]);
-            slow.max(gentle).max(cbrt(q * j / jerk[axis]))
+        let gentle = fade_time(&difference, &GENTLE_SHARES, limits);
+        let (rate, duration) = if gentle <= GENTLE_LONGEST {
+            (GENTLE_RATE, gentle)
+        } else {
+            (FADE_RATE, fade_time(&difference, &FADE_SHARES, limits))
         };
-        let duration = (0..N).map(time).fold(FADE_LEAST, f64::max);
-        Some(Self { difference, from, start: None, duration })
+        Some(Self { difference, from, start: None, duration, rate })
     }
 
     /// Moves begin from rest, and take so long to the next: the fade begins with them if it ends before they do. True if it does.
@@ -396,7 +399,7 @@ impl<const N: usize> Fade<N> {
     /// The greatest rate of programme time at a time.
     pub(super) fn rate(&self, time: f64) -> f64 {
         let fades = self.start.is_some_and(|start| time >= start) && !self.is_over(time);
-        if fades { FADE_RATE } else { 1.0 }
+        if fades { self.rate } else { 1.0 }
     }
 
     /// The share of the difference that has gone at a programme time: 0 before, 1 afterwards.
@@ -429,6 +432,19 @@ impl<const N: usize> Fade<N> {
         let times = |share: f64| self.difference.map(|q| q * share);
         JointCommand { position: times(1.0 - gone), velocity: times(-rate), acceleration: times(-slope) }
     }
+}
+
+/// How long a difference takes to fade within shares of the limits, in seconds.
+fn fade_time<const N: usize>(difference: &[f64; N], shares: &[f64; 3], limits: &RateLimits<N>) -> f64 {
+    let [v, a, j] = [0, 1, 2].map(|order| FADE_PEAKS[order] / shares[order]);
+    let time = |axis: usize| {
+        let q = difference[axis].abs();
+        let RateLimits { velocity, acceleration, jerk } = limits;
+        let slow = q * v / velocity[axis];
+        let gentle = crate::math::float::sqrt(q * a / acceleration[axis]);
+        slow.max(gentle).max(cbrt(q * j / jerk[axis]))
+    };
+    (0..N).map(time).fold(FADE_LEAST, f64::max)
 }
 
 /// The rate as the operator knows it: what share of full speed it is.
