@@ -62,6 +62,21 @@ impl Run {
         assert_eq!(end.status.fault, None);
     }
 
+    /// To rest, and back for so many cycles, without a fault: the cycles at which the arm stood.
+    fn pause_and_back_up(&mut self, cycles: f64) -> [usize; 2] {
+        let stand = |run: &mut Self| {
+            run.machine.request(Event::Hold);
+            run.until(|output| output.status.at_rest);
+            run.joints.len() - 1
+        };
+        let rest = stand(self);
+        self.machine.request(Event::BackUp);
+        for _ in 0..cycles as usize {
+            assert_eq!(self.cycle().status.fault, None);
+        }
+        [rest, stand(self)]
+    }
+
     fn assert_within_limits(&self, weld: &Weld) {
         let shares = worst_shares(&self.joints, &weld.arm, weld.cell.cycle.period);
         assert!(shares[0] <= 1.0 && shares[1] <= 1.001 && shares[2] <= 1.01, "{shares:?}");
@@ -168,16 +183,7 @@ fn backing_up_and_override_keep_the_path() {
             }
             run.cycle();
         }
-        run.machine.request(Event::Hold);
-        run.until(|output| output.status.at_rest);
-        let rest = run.joints.len() - 1;
-        run.machine.request(Event::BackUp);
-        for _ in 0..(random.within(50.0, 3_000.0) as usize) {
-            assert_eq!(run.cycle().status.fault, None);
-        }
-        run.machine.request(Event::Hold);
-        run.until(|output| output.status.at_rest);
-        let back = run.joints.len() - 1;
+        let [rest, back] = run.pause_and_back_up(random.within(50.0, 3_000.0));
         backed += usize::from((run.tool(back) - run.tool(rest)).norm() > 2.0 * MM);
         run.machine.set_override(1.0);
         run.machine.request(Event::Resume);
@@ -379,16 +385,7 @@ fn a_seam_is_left_behind_every_prefilter_on_the_feedrate() {
             (0..random.within(leaves - 300.0, leaves + 700.0) as usize).for_each(|_| {
                 run.cycle();
             });
-            run.machine.request(Event::Hold);
-            run.until(|output| output.status.at_rest);
-            let rest = run.joints.len() - 1;
-            run.machine.request(Event::BackUp);
-            for _ in 0..(random.within(50.0, 1_500.0) as usize) {
-                assert_eq!(run.cycle().status.fault, None);
-            }
-            run.machine.request(Event::Hold);
-            run.until(|output| output.status.at_rest);
-            let back = run.joints.len() - 1;
+            let [rest, back] = run.pause_and_back_up(random.within(50.0, 1_500.0));
             backed += usize::from((run.tool(back) - run.tool(rest)).norm() > 2.0 * MM);
             run.machine.request(Event::Resume);
             run.finish();
