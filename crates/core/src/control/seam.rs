@@ -229,7 +229,7 @@ impl SeamGuide {
     }
 
     /// The motion of the corrected path at a coordinate of the taught path ahead.
-    pub(super) fn motion_at(&self, s: f64) -> PoseJet {
+    fn motion_at(&self, s: f64) -> PoseJet {
         correct(&self.taught.jet(s), self.correction(), s)
     }
 
